@@ -1,0 +1,87 @@
+//! A drawing: its text, and edits that touch nothing but what is ours.
+
+mod edit;
+mod layers;
+mod mark;
+
+use crate::encoding::{self, Encoding};
+use crate::error::{Error, Position};
+use crate::limits::Limits;
+use crate::prescan::prescan;
+use crate::read;
+use crate::scene::{Scene, Selection};
+use roxmltree::ParsingOptions;
+
+pub use layers::Layer;
+
+/// A drawing. Every edit returns a new one; bytes outside the edit are the source's own.
+#[derive(Clone, Debug)]
+pub struct Document {
+    text: String,
+    encoding: Encoding,
+    limits: Limits,
+}
+
+impl Document {
+    /// Reads a drawing: SVG or svgz, with or without byte-order mark, in UTF-8, UTF-16 or
+    /// ISO 8859-1.
+    ///
+    /// Errors: not text, not XML, not SVG, or beyond [`Limits`], each with its position.
+    pub fn from_bytes(bytes: Vec<u8>) -> Result<Self, Error> {
+        Document::with_limits(bytes, Limits::default())
+    }
+
+    /// The same with other limits.
+    pub fn with_limits(bytes: Vec<u8>, limits: Limits) -> Result<Self, Error> {
+        let (text, encoding) = encoding::decode(bytes, &limits)?;
+        let document = Document { text, encoding, limits };
+        prescan(&document.text, &document.limits)?;
+        document.parse(|_| Ok(()))?;
+        Ok(document)
+    }
+
+    /// The drawing as it is stored, uncompressed.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        encoding::encode(&self.text, self.encoding)
+    }
+
+    /// The drawing's text.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Resolves every annotated object to plain geometry.
+    ///
+    /// Errors: an annotated object that cannot be read; each reason code is listed in SPEC.md.
+    pub fn scene(&self, selection: &Selection) -> Result<Scene, Error> {
+        self.parse(|xml| read::scene(xml, selection, &self.limits))
+    }
+
+    /// Parses the text for one use. The tree borrows the text, so it does not outlive it.
+    fn parse<T>(&self, f: impl FnOnce(&roxmltree::Document) -> Result<T, Error>) -> Result<T, Error> {
+        if self.text.trim().is_empty() {
+            return Err(Error::new("empty-file", "The file is empty", "Save the drawing again as SVG"));
+        }
+        let options = ParsingOptions { allow_dtd: true, nodes_limit: u32::MAX, ..ParsingOptions::default() };
+        let xml = roxmltree::Document::parse_with_options(&self.text, options).map_err(|error| self.xml_error(&error))?;
+        let root = xml.root_element();
+        if !read::is_svg_root(root) {
+            let at = Position::of(&self.text, root.range().start);
+            return Err(Error::new("not-svg", format!("This is XML, but its root is <{}>, not <svg>", root.tag_name().name()), "Open an SVG drawing").at(at));
+        }
+        f(&xml)
+    }
+
+    fn xml_error(&self, error: &roxmltree::Error) -> Error {
+        let at = error.pos();
+        let (line, column) = (at.row as usize, at.col as usize);
+        let full = error.to_string();
+        let reason = full.rsplit_once(" at ").map_or(full.as_str(), |(reason, _)| reason);
+        let (code, sentence) = if !self.text.trim_start().starts_with('<') {
+            ("not-xml", "The file is not an SVG drawing: it does not start with '<'".to_owned())
+        } else {
+            ("broken-xml", format!("The drawing is damaged or cut short: {reason}"))
+        };
+        Error::new(code, sentence, "Open it in Inkscape and save it again as SVG").at(Position { line, column })
+    }
+}

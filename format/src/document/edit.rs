@@ -1,0 +1,56 @@
+//! Byte-range splices.
+
+use std::ops::Range;
+
+/// Replaces ranges of `text`. Ranges must not overlap; they may touch, and are applied in
+/// order of their start (stable for insertions at one place).
+pub(super) fn splice(text: &str, mut edits: Vec<(Range<usize>, String)>) -> String {
+    edits.sort_by_key(|(range, _)| range.start);
+    let mut out = String::with_capacity(text.len() + edits.iter().map(|(_, new)| new.len()).sum::<usize>());
+    let mut at = 0;
+    for (range, new) in edits {
+        debug_assert!(range.start >= at, "edits overlap");
+        out.push_str(&text[at..range.start]);
+        out.push_str(&new);
+        at = range.end;
+    }
+    out.push_str(&text[at..]);
+    out
+}
+
+/// End of the start tag of an element whose text is `element`: the offsets of its `>` (or
+/// `/>`) and whether it closes itself. Quoted `>` are passed over.
+pub(super) fn start_tag_end(element: &str) -> (usize, bool) {
+    let bytes = element.as_bytes();
+    let mut quote = None;
+    for (i, &b) in bytes.iter().enumerate() {
+        match (quote, b) {
+            (Some(q), _) if q == b => quote = None,
+            (Some(_), _) => {}
+            (None, b'"' | b'\'') => quote = Some(b),
+            (None, b'>') => {
+                let closes = i > 0 && bytes[i - 1] == b'/';
+                return (if closes { i - 1 } else { i }, closes);
+            }
+            (None, _) => {}
+        }
+    }
+    (bytes.len(), false)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn splices_apply_in_order() {
+        let text = splice("abcdef", vec![(4..5, "X".into()), (0..0, "1".into()), (2..3, String::new())]);
+        assert_eq!(text, "1abdXf");
+    }
+
+    #[test]
+    fn start_tags_end_after_their_quotes() {
+        assert_eq!(start_tag_end("<a b='>' c=\"/>\">x"), (15, false));
+        assert_eq!(start_tag_end("<a/>"), (2, true));
+    }
+}

@@ -1,0 +1,220 @@
+//! Result layers: find, replace, add and remove them.
+
+use super::Document;
+use super::edit::{splice, start_tag_end};
+use crate::artwork::Artwork;
+use crate::error::Error;
+use crate::read::{Resolver, layer_transform};
+use crate::recipe::Recipe;
+use crate::vocabulary::{NAMESPACE, SVG};
+use crate::write::{self, Target, attribute, escaped};
+use kurbo::Affine;
+use roxmltree::Node;
+use std::collections::HashSet;
+use std::ops::Range;
+
+/// A result layer found in a drawing.
+#[derive(Clone, Debug)]
+pub struct Layer {
+    /// What made it.
+    pub recipe: Recipe,
+    range: Range<usize>,
+}
+
+impl Document {
+    /// The result layers in the drawing, in drawing order; not those inside another.
+    ///
+    /// Errors: a recipe that cannot be read.
+    pub fn layers(&self) -> Result<Vec<Layer>, Error> {
+        self.parse(|xml| {
+            let mut layers = Vec::new();
+            for node in result_nodes(xml) {
+                layers.push(Layer { recipe: read_recipe(self, node)?, range: node.range() });
+            }
+            Ok(layers)
+        })
+    }
+
+    /// The drawing without its result layers. The line break written before a layer goes too.
+    pub fn without_layers(&self) -> Result<Document, Error> {
+        let newline = self.newline();
+        let edits = self.layers()?.into_iter().map(|layer| {
+            let start = layer.range.start;
+            let start = if self.text[..start].ends_with(newline) { start - newline.len() } else { start };
+            (start..layer.range.end, String::new())
+        });
+        Ok(Document { text: splice(&self.text, edits.collect()), ..self.clone() })
+    }
+
+    /// Puts an artwork into the drawing. A layer of the same generator over the same sources
+    /// is replaced in place and keeps its tag: id, label, transform, visibility, lock.
+    ///
+    /// Errors: a layer that shares some but not all of the sources; a layer with a transform
+    /// that cannot be inverted.
+    pub fn with_layer(&self, artwork: &Artwork, recipe: &Recipe) -> Result<Document, Error> {
+        let text = self.parse(|xml| {
+            let mut mine = None;
+            for node in result_nodes(xml) {
+                let old = read_recipe(self, node)?;
+                if old.generator != recipe.generator {
+                    continue;
+                }
+                if old.sources == recipe.sources {
+                    mine = mine.or(Some(node));
+                } else if let Some(shared) = old.sources.iter().find(|id| recipe.sources.contains(id)) {
+                    let sentence = format!("'{shared}' is already filled, together with others, in the layer '{}'", label_of(node));
+                    return Err(Error::new("layer-overlap", sentence, "Fill all of that layer's shapes at once, or delete the layer first").at(self.position(node)));
+                }
+            }
+            match mine {
+                Some(node) => self.replaced(xml, node, artwork, recipe),
+                None => Ok(self.appended(xml, artwork, recipe)),
+            }
+        })?;
+        Ok(Document { text, ..self.clone() })
+    }
+
+    fn replaced(&self, xml: &roxmltree::Document, node: Node, artwork: &Artwork, recipe: &Recipe) -> Result<String, Error> {
+        let resolver = Resolver::new(xml, &self.limits)?;
+        let full = layer_transform(&resolver, node);
+        let inverse = full.inverse();
+        if !inverse.is_finite() || full.determinant().abs() < 1e-12 {
+            return Err(Error::new("flat-layer", format!("The layer '{}' is scaled to nothing", label_of(node)), "Delete it and run again").at(self.position(node)));
+        }
+        let range = node.range();
+        let element = &self.text[range.clone()];
+        let (tag_end, closes) = start_tag_end(element);
+        let tag_name = element[1..].split(|c: char| c.is_whitespace() || c == '>' || c == '/').next().unwrap_or("g").to_owned();
+        let id = node.attribute("id").map_or_else(|| free_id(xml, &recipe.label), str::to_owned);
+        let newline = self.newline();
+        let target = Target { id: &id, svg_prefix: tag_name.strip_suffix('g').unwrap_or(""), has_namespace: node.tag_name().namespace() == Some(SVG), inverse, newline };
+
+        let mut edits = Vec::new();
+        let params = serde_json::Value::Object(recipe.params.clone()).to_string();
+        let fresh = [("params", params), ("seed", recipe.seed.to_string()), ("source", recipe.source_attribute())];
+        let mut missing = String::new();
+        for (name, value) in fresh {
+            match node.attributes().find(|a| a.namespace() == Some(NAMESPACE) && a.name() == name) {
+                Some(a) => edits.push((a.range_value(), quoted_for(&self.text, a.range_value(), &value))),
+                None => {
+                    let prefix = node.lookup_prefix(NAMESPACE).unwrap_or("rinceau");
+                    attribute(&mut missing, &format!("{prefix}:{name}"), &value);
+                }
+            }
+        }
+        // The content uses these prefixes; whoever saved the drawing may have moved or
+        // renamed the declarations, so those not in scope are declared again.
+        for (prefix, uri) in [("rinceau", NAMESPACE), ("inkscape", crate::vocabulary::INKSCAPE), ("sodipodi", crate::vocabulary::SODIPODI)] {
+            if node.lookup_namespace_uri(Some(prefix)) != Some(uri) && !declares(node, prefix) {
+                attribute(&mut missing, &format!("xmlns:{prefix}"), uri);
+            }
+        }
+        let tag = range.start + tag_end;
+        let content = write::content(artwork, &target);
+        if closes {
+            edits.push((tag..range.end, format!("{missing}>{content}</{tag_name}>")));
+        } else {
+            let close = range.start + element.rfind("</").unwrap_or(element.len());
+            if !missing.is_empty() {
+                edits.push((tag..tag, missing));
+            }
+            edits.push((tag + 1..close, content));
+        }
+        Ok(splice(&self.text, edits))
+    }
+
+    fn appended(&self, xml: &roxmltree::Document, artwork: &Artwork, recipe: &Recipe) -> String {
+        let root = xml.root_element();
+        let range = root.range();
+        let element = &self.text[range.clone()];
+        let name = element[1..].split(|c: char| c.is_whitespace() || c == '>' || c == '/').next().unwrap_or("svg");
+        let prefix = name.strip_suffix("svg").unwrap_or("");
+        let id = free_id(xml, &recipe.label);
+        let newline = self.newline();
+        let target = Target { id: &id, svg_prefix: prefix, has_namespace: root.tag_name().namespace() == Some(SVG), inverse: Affine::IDENTITY, newline };
+        let layer = write::layer(artwork, recipe, &target);
+        let (tag_end, closes) = start_tag_end(element);
+        let edit = if closes {
+            (range.start + tag_end..range.end, format!(">{newline}{layer}</{name}>"))
+        } else {
+            let close = range.start + element.rfind("</").unwrap_or(element.len());
+            (close..close, format!("{newline}{layer}"))
+        };
+        splice(&self.text, vec![edit])
+    }
+
+    /// The drawing's own line end.
+    pub(super) fn newline(&self) -> &'static str {
+        let first = self.text.find('\n');
+        if first.is_some_and(|i| i > 0 && self.text.as_bytes()[i - 1] == b'\r') { "\r\n" } else { "\n" }
+    }
+
+    pub(super) fn position(&self, node: Node) -> crate::error::Position {
+        crate::error::Position::of(&self.text, node.range().start)
+    }
+}
+
+/// Nodes of result layers, outermost only.
+fn result_nodes<'a, 'i>(xml: &'a roxmltree::Document<'i>) -> Vec<Node<'a, 'i>> {
+    let mut nodes: Vec<Node> = Vec::new();
+    for node in xml.descendants().filter(|node| node.attribute((NAMESPACE, "result")).is_some()) {
+        if nodes.last().is_none_or(|last| node.range().start >= last.range().end) {
+            nodes.push(node);
+        }
+    }
+    nodes
+}
+
+fn read_recipe(document: &Document, node: Node) -> Result<Recipe, Error> {
+    let get = |name: &str| node.attribute((NAMESPACE, name));
+    let broken = |what: &str| {
+        Error::new("broken-recipe", format!("The recipe of the layer '{}' cannot be read: {what}", label_of(node)), "Delete the layer and run the generator again").at(document.position(node))
+    };
+    let params = match serde_json::from_str(get("params").unwrap_or("{}")) {
+        Ok(serde_json::Value::Object(params)) => params,
+        _ => return Err(broken("rinceau:params is not a JSON object")),
+    };
+    let seed = get("seed").unwrap_or("0").trim().parse().map_err(|_| broken("rinceau:seed is not a whole number"))?;
+    Ok(Recipe { generator: get("result").unwrap_or("").to_owned(), params, seed, sources: Recipe::parse_sources(get("source").unwrap_or("")), label: label_of(node) })
+}
+
+fn label_of(node: Node) -> String {
+    let label = node.attribute((crate::vocabulary::INKSCAPE, "label")).or_else(|| node.attribute("id"));
+    label.unwrap_or("Ornament").to_owned()
+}
+
+/// An id made from a label that no object has.
+fn free_id(xml: &roxmltree::Document, label: &str) -> String {
+    let mut base = String::new();
+    for c in label.chars().take(40) {
+        let c = if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+        if !(c == '-' && (base.is_empty() || base.ends_with('-'))) {
+            base.push(c);
+        }
+    }
+    let base = match base.trim_end_matches('-') {
+        "" => "ornament".to_owned(),
+        base if base.starts_with(|c: char| c.is_ascii_digit()) => format!("ornament-{base}"),
+        base => base.to_owned(),
+    };
+    // The ids of the layer's content start with the layer's, so no id may start with it.
+    let taken: HashSet<&str> = xml.descendants().filter_map(|node| node.attribute("id")).filter(|id| id.starts_with(&base)).collect();
+    let is_free = |id: &str| !taken.iter().any(|other| other.strip_prefix(id).is_some_and(|rest| rest.is_empty() || rest.starts_with('-')));
+    let mut id = base.clone();
+    let mut n = 1;
+    while !is_free(&id) {
+        n += 1;
+        id = format!("{base}_{n}");
+    }
+    id
+}
+
+/// An attribute value escaped for the quotes that stand around it.
+fn quoted_for(text: &str, range: Range<usize>, value: &str) -> String {
+    let escaped = escaped(value);
+    if text.as_bytes().get(range.end) == Some(&b'\'') { escaped.replace('\'', "&#39;") } else { escaped }
+}
+
+fn declares(node: Node, prefix: &str) -> bool {
+    node.namespaces().any(|namespace| namespace.name() == Some(prefix))
+}

@@ -1,0 +1,133 @@
+//! Marking objects with roles, and clearing the marks.
+
+use super::Document;
+use super::edit::{splice, start_tag_end};
+use crate::error::Error;
+use crate::read::Resolver;
+use crate::vocabulary::{NAMESPACE, Role};
+use crate::write::{attribute, escaped};
+use roxmltree::Node;
+use std::ops::Range;
+
+/// What a mark looks like on the canvas, after the diagrams of the FLOWPAK paper (F-011).
+fn appearance(role: Role) -> &'static [(&'static str, &'static str)] {
+    match role {
+        Role::Container => &[("fill", "none"), ("stroke", "#000000")],
+        Role::Guide | Role::Spine => &[("fill", "none"), ("stroke", "#ff0000")],
+        Role::Stem | Role::Boundary => &[("fill", "none"), ("stroke", "#0000ff")],
+        Role::FixedSpine => &[("fill", "none"), ("stroke", "#00aa00")],
+        Role::Fixed => &[("fill", "#00aa00")],
+        Role::Seed | Role::Tack => &[("fill", "#ff7f00")],
+        Role::Spray => &[("fill", "none"), ("stroke-opacity", "0.3")],
+        Role::Element | Role::Form | Role::Clone | Role::Reference | Role::Rules => &[],
+    }
+}
+
+/// Id of the arrow head that shows which way a guide runs.
+const ARROW: &str = "rinceau-arrow";
+
+impl Document {
+    /// Gives the objects a role: attribute, class, and the colours of the papers' diagrams.
+    /// `None` clears role and class and leaves the colours.
+    ///
+    /// Errors: an id that no object or two objects have, or that comes out of an entity.
+    pub fn with_role(&self, ids: &[String], role: Option<Role>) -> Result<Document, Error> {
+        let text = self.parse(|xml| {
+            let resolver = Resolver::new(xml, &self.limits)?;
+            let mut nodes: Vec<Node> = Vec::new();
+            for id in ids {
+                let node = resolver.by_id(id, None)?.ok_or_else(|| Error::new("unknown-id", format!("No object has the id '{id}'"), "Check the id in Object > Object Properties"))?;
+                if !nodes.contains(&node) {
+                    nodes.push(node);
+                }
+            }
+            let mut edits = Vec::new();
+            let prefix = if role.is_some() { self.declare(xml, &mut edits) } else { String::new() };
+            for &node in &nodes {
+                self.mark(node, role, &prefix, &mut edits)?;
+            }
+            if role == Some(Role::Guide) && resolver.by_id(ARROW, None)?.is_none() {
+                edits.push(self.arrow(xml));
+            }
+            Ok(splice(&self.text, edits))
+        })?;
+        Document::with_limits(crate::encoding::encode(&text, self.encoding), self.limits.clone())
+    }
+
+    /// The prefix of our namespace at the root, declared there if it is not.
+    fn declare(&self, xml: &roxmltree::Document, edits: &mut Vec<(Range<usize>, String)>) -> String {
+        let root = xml.root_element();
+        if let Some(namespace) = root.namespaces().find(|namespace| namespace.uri() == NAMESPACE && namespace.name().is_some()) {
+            return namespace.name().unwrap_or("rinceau").to_owned();
+        }
+        let mut prefix = "rinceau".to_owned();
+        while root.namespaces().any(|namespace| namespace.name() == Some(&prefix)) {
+            prefix.push('_');
+        }
+        let range = root.range();
+        let name_end = range.start + self.text[range.start..].find(|c: char| c.is_whitespace() || c == '>' || c == '/').unwrap_or(4);
+        let mut declaration = String::new();
+        attribute(&mut declaration, &format!("xmlns:{prefix}"), NAMESPACE);
+        edits.push((name_end..name_end, declaration));
+        prefix
+    }
+
+    fn mark(&self, node: Node, role: Option<Role>, prefix: &str, edits: &mut Vec<(Range<usize>, String)>) -> Result<(), Error> {
+        let range = node.range();
+        if !self.text[range.clone()].starts_with('<') {
+            return Err(Error::new("in-entity", "The object comes out of an entity", "Save the drawing in Inkscape first").at(self.position(node)));
+        }
+        let mut fresh = String::new();
+        let mut put = |own: Option<roxmltree::Attribute>, name: &str, value: Option<String>| match (own, value) {
+            (Some(own), Some(value)) => edits.push((own.range_value(), escaped(&value).replace('\'', "&#39;"))),
+            (Some(own), None) => {
+                let start = self.text[..own.range().start].trim_end().len();
+                edits.push((start..own.range().end, String::new()));
+            }
+            (None, Some(value)) => attribute(&mut fresh, name, &value),
+            (None, None) => {}
+        };
+        let find = |namespace: Option<&str>, name: &str| node.attributes().find(|a| a.namespace() == namespace && a.name() == name);
+        put(find(Some(NAMESPACE), "role"), &format!("{prefix}:role"), role.map(|role| role.name().to_owned()));
+        let others: Vec<&str> = node.attribute("class").unwrap_or("").split_whitespace().filter(|token| Role::from_class(token).is_none()).collect();
+        let class = others.into_iter().map(str::to_owned).chain(role.map(Role::class)).collect::<Vec<_>>().join(" ");
+        put(find(None, "class"), "class", Some(class).filter(|class| !class.is_empty()));
+        if let Some(role) = role {
+            let style = marked_style(node.attribute("style").unwrap_or(""), role);
+            put(find(None, "style"), "style", Some(style).filter(|style| !style.is_empty()));
+        }
+        if !fresh.is_empty() {
+            let (tag_end, _) = start_tag_end(&self.text[range.clone()]);
+            edits.push((range.start + tag_end..range.start + tag_end, fresh));
+        }
+        Ok(())
+    }
+
+    /// An arrow head in `<defs>` of its own at the start of the drawing.
+    fn arrow(&self, xml: &roxmltree::Document) -> (Range<usize>, String) {
+        let root = xml.root_element();
+        let range = root.range();
+        let element = &self.text[range.clone()];
+        let (tag_end, _) = start_tag_end(element);
+        let name = element[1..].split(|c: char| c.is_whitespace() || c == '>').next().unwrap_or("svg");
+        let p = name.strip_suffix("svg").unwrap_or("");
+        let at = range.start + tag_end + 1;
+        let newline = self.newline();
+        let marker = format!("{newline}<{p}defs><{p}marker id=\"{ARROW}\" orient=\"auto\" markerWidth=\"6\" markerHeight=\"6\" refX=\"4\" refY=\"3\"><{p}path d=\"M0,0L6,3L0,6Z\" style=\"fill:#ff0000\"/></{p}marker></{p}defs>");
+        (at..at, marker)
+    }
+}
+
+/// The object's style with the mark's colours in place of its own.
+fn marked_style(style: &str, role: Role) -> String {
+    let colours = appearance(role);
+    let mut out: Vec<String> = simplecss::DeclarationTokenizer::from(style)
+        .filter(|d| !colours.iter().any(|(name, _)| *name == d.name) && !(role == Role::Guide && d.name == "marker-end"))
+        .map(|d| format!("{}:{}{}", d.name, d.value, if d.important { " !important" } else { "" }))
+        .collect();
+    out.extend(colours.iter().map(|(name, value)| format!("{name}:{value}")));
+    if role == Role::Guide {
+        out.push(format!("marker-end:url(#{ARROW})"));
+    }
+    out.join(";")
+}

@@ -1,0 +1,114 @@
+//! One error type: a sentence, where it happened, and what to do about it.
+
+use std::fmt;
+
+/// A place in the drawing's text, counted as editors count: from 1, columns in characters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Position {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+}
+
+impl Position {
+    /// The position of byte `offset` of `text`.
+    pub fn of(text: &str, offset: usize) -> Self {
+        let before = &text.as_bytes()[..offset.min(text.len())];
+        let line_start = before.iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
+        let line = 1 + before.iter().filter(|&&b| b == b'\n').count();
+        // A continuation byte (0b10xxxxxx) does not start a character.
+        let column = 1 + before[line_start..].iter().filter(|&&b| b & 0xC0 != 0x80).count();
+        Position { line, column }
+    }
+}
+
+impl fmt::Display for Position {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.line, self.column)
+    }
+}
+
+/// Why a drawing cannot be used. `Display` is the whole message a person reads:
+/// `12:7: The container 'body' is open. Close the path … [open-container]`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Error {
+    code: &'static str,
+    at: Option<Position>,
+    sentence: String,
+    remedy: String,
+}
+
+impl Error {
+    /// A new error. `sentence` says what is wrong, `remedy` what to do; both without a final
+    /// full stop. Control and bidirectional characters in them are escaped.
+    pub fn new(code: &'static str, sentence: impl AsRef<str>, remedy: impl AsRef<str>) -> Self {
+        Error { code, at: None, sentence: printable(sentence.as_ref()), remedy: printable(remedy.as_ref()) }
+    }
+
+    /// The same error at a position.
+    #[must_use]
+    pub fn at(mut self, at: Position) -> Self {
+        self.at = Some(at);
+        self
+    }
+
+    /// The reason code, stable across versions, such as `open-container`.
+    pub fn code(&self) -> &'static str {
+        self.code
+    }
+
+    /// Where in the drawing, if it is anywhere.
+    pub fn position(&self) -> Option<Position> {
+        self.at
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(at) = self.at {
+            write!(f, "{at}: ")?;
+        }
+        write!(f, "{}. {}. [{}]", self.sentence, self.remedy, self.code)
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// Escapes what a terminal or a dialog could be fooled by: C0 and C1 controls and the
+/// bidirectional overrides. Long text is cut, so that a message stays a sentence.
+pub(crate) fn printable(text: &str) -> String {
+    const LONGEST: usize = 600;
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        if out.len() > LONGEST {
+            out.push('…');
+            break;
+        }
+        let bidirectional = matches!(c, '\u{200E}' | '\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}');
+        if c.is_control() || bidirectional {
+            out.extend(c.escape_unicode());
+        } else {
+            out.push(c);
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_count_lines_and_characters() {
+        let text = "ab\ncé<x";
+        assert_eq!(Position::of(text, 0), Position { line: 1, column: 1 });
+        assert_eq!(Position::of(text, text.find('<').unwrap()), Position { line: 2, column: 3 });
+    }
+
+    #[test]
+    fn messages_escape_controls() {
+        let error = Error::new("x", "bad\u{1b}[31m \u{202e} name", "do");
+        assert_eq!(error.to_string(), "bad\\u{1b}[31m \\u{202e} name. do. [x]");
+    }
+}

@@ -1,0 +1,77 @@
+//! Numbers and path data with fixed decimals, so that the same picture is the same bytes.
+
+use kurbo::{BezPath, PathEl, Point};
+use std::fmt::Write;
+
+/// Decimals that keep a coordinate of a drawing of this size (its larger side, in user
+/// units) within a millionth of the size: 3 for 800 px, 5 for 8 mm.
+pub fn decimals_for(size: f64) -> usize {
+    const RELATIVE: f64 = 1e-6;
+    let mut decimals = 0;
+    let mut step = 1.0;
+    while step > size.max(f64::MIN_POSITIVE) * RELATIVE && decimals < 9 {
+        step /= 10.0;
+        decimals += 1;
+    }
+    decimals
+}
+
+/// Appends `value` with at most `decimals` decimals: no exponent, no `-0`, no trailing zero.
+pub fn write_number(out: &mut String, value: f64, decimals: usize) {
+    let start = out.len();
+    let _ = write!(out, "{value:.decimals$}");
+    if decimals > 0 {
+        let kept = out[start..].trim_end_matches('0').trim_end_matches('.').len();
+        out.truncate(start + kept);
+    }
+    if &out[start..] == "-0" {
+        out.replace_range(start.., "0");
+    }
+}
+
+/// SVG path data in absolute commands.
+pub fn path_data(path: &BezPath, decimals: usize) -> String {
+    let mut out = String::new();
+    for el in path.elements() {
+        match *el {
+            PathEl::MoveTo(p) => command(&mut out, 'M', &[p], decimals),
+            PathEl::LineTo(p) => command(&mut out, 'L', &[p], decimals),
+            PathEl::QuadTo(a, p) => command(&mut out, 'Q', &[a, p], decimals),
+            PathEl::CurveTo(a, b, p) => command(&mut out, 'C', &[a, b, p], decimals),
+            PathEl::ClosePath => out.push('Z'),
+        }
+    }
+    out
+}
+
+fn command(out: &mut String, letter: char, points: &[Point], decimals: usize) {
+    out.push(letter);
+    for (i, p) in points.iter().enumerate() {
+        if i > 0 {
+            out.push(' ');
+        }
+        write_number(out, p.x, decimals);
+        out.push(',');
+        write_number(out, p.y, decimals);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_fixed() {
+        let show = |value, decimals| {
+            let mut out = String::new();
+            write_number(&mut out, value, decimals);
+            out
+        };
+        assert_eq!(show(1.0, 3), "1");
+        assert_eq!(show(-0.0001, 3), "0");
+        assert_eq!(show(1.2346, 3), "1.235");
+        assert_eq!(show(100.0, 0), "100");
+        assert_eq!(show(1e12, 2), "1000000000000");
+        assert_eq!((decimals_for(800.0), decimals_for(8.0), decimals_for(1e9)), (4, 6, 0));
+    }
+}

@@ -1,0 +1,38 @@
+//! One walk over the XML fills the [`Scene`].
+//!
+//! The walk keeps its own stack, so that depth is bounded by memory already counted and not
+//! by the thread's stack. A shape belongs to the innermost role around it. Styles are
+//! computed only inside annotated objects; an ordinary drawing around them costs nothing.
+
+mod collect;
+mod resolver;
+mod role;
+
+use crate::error::Error;
+use crate::limits::Limits;
+use crate::scene::{Scene, Selection};
+
+/// Reads every annotated (or selected) object of a parsed drawing.
+///
+/// Errors: see SPEC.md, "Reason codes". Nothing outside annotated objects can be an error.
+pub(crate) fn scene(xml: &roxmltree::Document, selection: &Selection, limits: &Limits) -> Result<Scene, Error> {
+    let resolver = resolver::Resolver::new(xml, limits)?;
+    collect::walk(&resolver, selection)
+}
+
+pub(crate) use resolver::{Resolver, node_reference};
+pub(crate) use role::role_of;
+
+/// True for `<svg>`, with or without its namespace.
+pub(crate) fn is_svg_root(root: roxmltree::Node) -> bool {
+    resolver::is_svg(&root, "svg")
+}
+
+/// From a result layer's own coordinates to the root's. A transform that cannot be read
+/// counts as none, as renderers do.
+pub(crate) fn layer_transform(resolver: &Resolver, layer: roxmltree::Node) -> kurbo::Affine {
+    let units = crate::units::Units { viewport: resolver.view.size(), em: 16.0 };
+    let mut chain: Vec<_> = layer.ancestors().filter(|node| node.parent_element().is_some()).collect();
+    chain.reverse();
+    chain.into_iter().map(|node| resolver::own_transform(node, &units).unwrap_or_default()).fold(kurbo::Affine::IDENTITY, |all, own| all * own)
+}

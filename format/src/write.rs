@@ -1,0 +1,172 @@
+//! Artwork to a result layer.
+
+use crate::artwork::{Artwork, Group, Item, Part};
+use crate::number::{path_data, write_number};
+use crate::recipe::Recipe;
+use crate::vocabulary::{INKSCAPE, NAMESPACE, SODIPODI, SVG};
+use kurbo::Affine;
+use std::fmt::Write;
+
+/// Inkscape's merge of an extension's result is quadratic in siblings, so they come in groups.
+const SIBLINGS: usize = 200;
+
+/// Where and how a layer is written.
+pub(crate) struct Target<'a> {
+    /// Id of the layer; ids of its content start with it.
+    pub id: &'a str,
+    /// Prefix of SVG elements with its colon, or empty.
+    pub svg_prefix: &'a str,
+    /// True if the drawing has the SVG namespace at all.
+    pub has_namespace: bool,
+    /// From root units to the layer's own coordinates.
+    pub inverse: Affine,
+    /// The line end of the drawing.
+    pub newline: &'a str,
+}
+
+/// The whole layer as text. It declares its own namespaces, so that nothing outside it has
+/// to change, and taking it out leaves the drawing as it was.
+pub(crate) fn layer(artwork: &Artwork, recipe: &Recipe, target: &Target) -> String {
+    let mut out = String::new();
+    let prefix = target.svg_prefix;
+    let _ = write!(out, "<{prefix}g");
+    if target.has_namespace {
+        let name = if prefix.is_empty() { "xmlns".to_owned() } else { format!("xmlns:{}", prefix.trim_end_matches(':')) };
+        attribute(&mut out, &name, SVG);
+    }
+    attribute(&mut out, "xmlns:inkscape", INKSCAPE);
+    attribute(&mut out, "xmlns:sodipodi", SODIPODI);
+    attribute(&mut out, "xmlns:rinceau", NAMESPACE);
+    attribute(&mut out, "id", target.id);
+    attribute(&mut out, "inkscape:groupmode", "layer");
+    attribute(&mut out, "inkscape:label", &recipe.label);
+    recipe_attributes(&mut out, recipe, "rinceau");
+    out.push('>');
+    out.push_str(&content(artwork, target));
+    let _ = write!(out, "</{prefix}g>");
+    out
+}
+
+/// ` rinceau:result=… rinceau:params=… rinceau:seed=… rinceau:source=…`
+pub(crate) fn recipe_attributes(out: &mut String, recipe: &Recipe, prefix: &str) {
+    attribute(out, &format!("{prefix}:result"), &recipe.generator);
+    let params = serde_json::Value::Object(recipe.params.clone()).to_string();
+    attribute(out, &format!("{prefix}:params"), &params);
+    attribute(out, &format!("{prefix}:seed"), &recipe.seed.to_string());
+    attribute(out, &format!("{prefix}:source"), &recipe.source_attribute());
+}
+
+/// Everything between the layer's tags.
+pub(crate) fn content(artwork: &Artwork, target: &Target) -> String {
+    let mut out = String::new();
+    for group in &artwork.groups {
+        sublayer(&mut out, group, artwork.decimals, target);
+    }
+    out.push_str(target.newline);
+    out
+}
+
+fn sublayer(out: &mut String, group: &Group, decimals: usize, target: &Target) {
+    let (prefix, newline) = (target.svg_prefix, target.newline);
+    let id = format!("{}-{}", target.id, group.name);
+    let _ = write!(out, "{newline}<{prefix}g");
+    attribute(out, "id", &id);
+    attribute(out, "inkscape:groupmode", "layer");
+    attribute(out, "inkscape:label", &group.name);
+    if group.hidden {
+        attribute(out, "style", "display:none");
+    }
+    out.push('>');
+    let grouped = group.items.len() > SIBLINGS;
+    for (chunk_index, chunk) in group.items.chunks(SIBLINGS).enumerate() {
+        if grouped {
+            let _ = write!(out, "{newline}<{prefix}g");
+            attribute(out, "id", &format!("{id}-g{}", chunk_index + 1));
+            out.push('>');
+        }
+        for (i, item) in chunk.iter().enumerate() {
+            out.push_str(newline);
+            write_item(out, item, &format!("{id}-{}", chunk_index * SIBLINGS + i + 1), decimals, target);
+        }
+        if grouped {
+            let _ = write!(out, "{newline}</{prefix}g>");
+        }
+    }
+    let _ = write!(out, "{newline}</{prefix}g>");
+}
+
+fn write_item(out: &mut String, item: &Item, id: &str, decimals: usize, target: &Target) {
+    if let [part] = item.parts.as_slice() {
+        write_part(out, part, Some((id, &item.of)), decimals, target);
+        return;
+    }
+    let prefix = target.svg_prefix;
+    let _ = write!(out, "<{prefix}g");
+    attribute(out, "id", id);
+    attribute(out, "rinceau:of", &item.of);
+    out.push('>');
+    for part in &item.parts {
+        write_part(out, part, None, decimals, target);
+    }
+    let _ = write!(out, "</{prefix}g>");
+}
+
+fn write_part(out: &mut String, part: &Part, item: Option<(&str, &str)>, decimals: usize, target: &Target) {
+    let _ = write!(out, "<{}path", target.svg_prefix);
+    if let Some((id, of)) = item {
+        attribute(out, "id", id);
+        attribute(out, "rinceau:of", of);
+    }
+    let transform = target.inverse * part.transform;
+    let path = if part.transform == Affine::IDENTITY {
+        // Made in root units: no transform attribute is needed, the points are moved instead.
+        target.inverse * part.path.clone()
+    } else {
+        if transform != Affine::IDENTITY {
+            attribute(out, "transform", &matrix(transform));
+        }
+        part.path.clone()
+    };
+    attribute(out, "style", &part.style.css());
+    attribute(out, "d", &path_data(&path, decimals));
+    out.push_str("/>");
+}
+
+fn matrix(transform: Affine) -> String {
+    // Coefficients multiply coordinates of a whole page, so they carry more decimals.
+    const DECIMALS: usize = 9;
+    let mut text = String::from("matrix(");
+    for (i, c) in transform.as_coeffs().into_iter().enumerate() {
+        if i > 0 {
+            text.push(' ');
+        }
+        write_number(&mut text, c, DECIMALS);
+    }
+    text.push(')');
+    text
+}
+
+/// Appends ` name="value"`, escaped.
+pub(crate) fn attribute(out: &mut String, name: &str, value: &str) {
+    let _ = write!(out, " {name}=\"{}\"", escaped(value));
+}
+
+/// A value escaped for double quotes. Characters that XML forbids are dropped: they cannot
+/// come from a drawing, only from a shell.
+pub(crate) fn escaped(value: &str) -> String {
+    let mut out = String::with_capacity(value.len());
+    for c in value.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\n' | '\r' | '\t' => {
+                let _ = write!(out, "&#{};", u32::from(c));
+            }
+            c if c < ' ' || matches!(c, '\u{FFFE}' | '\u{FFFF}') => {}
+            c => out.push(c),
+        }
+    }
+    out
+}

@@ -1,0 +1,7 @@
+//! Directions of flow inside a region, and the streamlines that follow them.
+
+pub mod direction;
+pub mod streamline;
+
+pub use direction::DirectionField;
+pub use streamline::{BOUNDARY_BONUS, LineKind, Streamline, StreamlineParams, Tracer};

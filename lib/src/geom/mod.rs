@@ -1,0 +1,9 @@
+//! Geometry that several generators share. Nothing here knows of scenes or artwork.
+
+pub mod bend;
+pub mod boolean;
+pub mod flatten;
+pub mod near;
+pub mod polyline;
+pub mod region;
+pub mod spline;

@@ -1,0 +1,238 @@
+//! Uniform grids: which points or segments are near a place.
+
+use kurbo::{Point, Rect};
+
+/// Cells of a grid at most; more would cost memory without finding faster.
+const MOST_CELLS: f64 = 4e6;
+
+/// Maps places to cells of equal size.
+#[derive(Clone, Debug)]
+struct Cells {
+    origin: Point,
+    size: f64,
+    columns: usize,
+    rows: usize,
+}
+
+impl Cells {
+    fn new(bounds: Rect, size: f64) -> Self {
+        let size = size.max((bounds.width() * bounds.height() / MOST_CELLS).sqrt()).max(f64::MIN_POSITIVE);
+        let count = |side: f64| ((side / size).ceil().min(MOST_CELLS) as usize).max(1);
+        Cells { origin: bounds.origin(), size, columns: count(bounds.width()), rows: count(bounds.height()) }
+    }
+
+    fn column(&self, x: f64) -> usize {
+        (((x - self.origin.x) / self.size).max(0.0) as usize).min(self.columns - 1)
+    }
+
+    fn row(&self, y: f64) -> usize {
+        (((y - self.origin.y) / self.size).max(0.0) as usize).min(self.rows - 1)
+    }
+
+    fn index(&self, p: Point) -> usize {
+        self.row(p.y) * self.columns + self.column(p.x)
+    }
+
+    /// Indices of the cells a box touches, row by row.
+    fn covered(&self, low: Point, high: Point) -> impl Iterator<Item = usize> + use<> {
+        let (c0, c1) = (self.column(low.x), self.column(high.x));
+        let (r0, r1, columns) = (self.row(low.y), self.row(high.y), self.columns);
+        (r0..=r1).flat_map(move |row| (c0..=c1).map(move |column| row * columns + column))
+    }
+}
+
+/// Points with an owner each, to be found by place.
+#[derive(Clone, Debug)]
+pub struct PointGrid {
+    cells: Cells,
+    content: Vec<Vec<(Point, u32)>>,
+}
+
+impl PointGrid {
+    /// An empty grid over `bounds`; places outside fall into the border cells.
+    pub fn new(bounds: Rect, cell: f64) -> Self {
+        let cells = Cells::new(bounds, cell);
+        let content = vec![Vec::new(); cells.columns * cells.rows];
+        PointGrid { cells, content }
+    }
+
+    /// Adds a point.
+    pub fn insert(&mut self, p: Point, owner: u32) {
+        let index = self.cells.index(p);
+        self.content[index].push((p, owner));
+    }
+
+    /// Visits the points within `radius` (and some beyond), until `visit` says false.
+    pub fn visit(&self, at: Point, radius: f64, mut visit: impl FnMut(Point, u32) -> bool) {
+        let (low, high) = (Point::new(at.x - radius, at.y - radius), Point::new(at.x + radius, at.y + radius));
+        for index in self.cells.covered(low, high) {
+            for &(p, owner) in &self.content[index] {
+                if !visit(p, owner) {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// True if a point that `counts` lies closer than `radius`.
+    pub fn any_within(&self, at: Point, radius: f64, mut counts: impl FnMut(Point, u32) -> bool) -> bool {
+        let mut found = false;
+        self.visit(at, radius, |p, owner| {
+            found = p.distance_squared(at) < radius * radius && counts(p, owner);
+            !found
+        });
+        found
+    }
+}
+
+/// Segments with an owner each, to be found by place.
+#[derive(Clone, Debug)]
+pub struct SegmentGrid {
+    cells: Cells,
+    segments: Vec<(Point, Point, u32)>,
+    content: Vec<Vec<u32>>,
+}
+
+impl SegmentGrid {
+    /// An empty grid over `bounds`; places outside fall into the border cells.
+    pub fn new(bounds: Rect, cell: f64) -> Self {
+        let cells = Cells::new(bounds, cell);
+        let content = vec![Vec::new(); cells.columns * cells.rows];
+        SegmentGrid { cells, segments: Vec::new(), content }
+    }
+
+    /// Adds a segment.
+    pub fn insert(&mut self, a: Point, b: Point, owner: u32) {
+        let id = self.segments.len() as u32;
+        self.segments.push((a, b, owner));
+        let (low, high) = (Point::new(a.x.min(b.x), a.y.min(b.y)), Point::new(a.x.max(b.x), a.y.max(b.y)));
+        for index in self.cells.covered(low, high) {
+            self.content[index].push(id);
+        }
+    }
+
+    /// Adds the sides of a closed contour.
+    pub fn insert_contour(&mut self, contour: &[Point], owner: u32) {
+        let Some(&last) = contour.last() else { return };
+        let mut previous = last;
+        for &p in contour {
+            self.insert(previous, p, owner);
+            previous = p;
+        }
+    }
+
+    /// Visits the segments that may come within `radius` of the box of `a` and `b`, until
+    /// `visit` says false. A segment may be visited more than once.
+    pub fn visit(&self, a: Point, b: Point, radius: f64, mut visit: impl FnMut(Point, Point, u32) -> bool) {
+        let low = Point::new(a.x.min(b.x) - radius, a.y.min(b.y) - radius);
+        let high = Point::new(a.x.max(b.x) + radius, a.y.max(b.y) + radius);
+        for index in self.cells.covered(low, high) {
+            for &id in &self.content[index] {
+                let (p, q, owner) = self.segments[id as usize];
+                if !visit(p, q, owner) {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Distance to the nearest segment, or `reach` if none is nearer.
+    pub fn distance(&self, at: Point, reach: f64) -> f64 {
+        let mut best = reach;
+        // Growing squares: most queries end in the first.
+        let mut radius = self.cells.size.min(reach);
+        loop {
+            self.visit(at, at, radius, |p, q, _| {
+                best = best.min(point_segment(at, p, q));
+                true
+            });
+            if best <= radius || radius >= reach {
+                return best;
+            }
+            radius = (radius * 2.0).min(reach);
+        }
+    }
+
+    /// How far a ray from `at` along the unit vector `along` runs before it meets a segment,
+    /// `reach` at most.
+    pub fn ray(&self, at: Point, along: kurbo::Vec2, reach: f64) -> f64 {
+        let mut best = reach;
+        // Walk in pieces, so that a short way does not look at far cells.
+        let piece = self.cells.size.max(reach / 256.0);
+        let mut walked = 0.0;
+        while walked < best {
+            let to = (walked + piece).min(reach);
+            self.visit(at + walked * along, at + to * along, 0.0, |p, q, _| {
+                if let Some(t) = ray_segment(at, along, p, q) {
+                    best = best.min(t);
+                }
+                true
+            });
+            walked = to;
+            if to >= reach {
+                break;
+            }
+        }
+        best
+    }
+}
+
+/// Distance from a point to a segment.
+pub fn point_segment(at: Point, p: Point, q: Point) -> f64 {
+    let d = q - p;
+    let squared = d.hypot2();
+    let t = if squared > 0.0 { ((at - p).dot(d) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    at.distance(p + t * d)
+}
+
+/// Distance between two segments; 0 if they cross.
+pub fn segment_segment(a: Point, b: Point, p: Point, q: Point) -> f64 {
+    if crosses(a, b, p, q) {
+        return 0.0;
+    }
+    point_segment(a, p, q).min(point_segment(b, p, q)).min(point_segment(p, a, b)).min(point_segment(q, a, b))
+}
+
+/// True if two segments cross in their interiors.
+pub fn crosses(a: Point, b: Point, p: Point, q: Point) -> bool {
+    let side = |o: Point, d: Point, x: Point| (d - o).cross(x - o);
+    let (s1, s2) = (side(a, b, p), side(a, b, q));
+    let (s3, s4) = (side(p, q, a), side(p, q, b));
+    s1 * s2 < 0.0 && s3 * s4 < 0.0
+}
+
+fn ray_segment(at: Point, along: kurbo::Vec2, p: Point, q: Point) -> Option<f64> {
+    let d = q - p;
+    let denominator = along.cross(d);
+    if denominator == 0.0 {
+        return None;
+    }
+    let w = p - at;
+    let (t, u) = (w.cross(d) / denominator, w.cross(along) / denominator);
+    (t >= 0.0 && (0.0..=1.0).contains(&u)).then_some(t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+    use kurbo::Vec2;
+
+    #[test]
+    fn distances_and_rays_agree_with_brute_force() {
+        let mut rng = Rng::new(1);
+        let mut point = || Point::new(rng.between(0.0, 100.0), rng.between(0.0, 100.0));
+        let segments: Vec<(Point, Point)> = (0..200).map(|_| { let p = point(); (p, p.lerp(point(), 0.1)) }).collect();
+        let mut grid = SegmentGrid::new(Rect::new(0.0, 0.0, 100.0, 100.0), 3.0);
+        segments.iter().for_each(|&(p, q)| grid.insert(p, q, 0));
+        for i in 0..200 {
+            let at = point();
+            let brute = segments.iter().map(|&(p, q)| point_segment(at, p, q)).fold(50.0, f64::min);
+            assert!((grid.distance(at, 50.0) - brute).abs() < 1e-12);
+            let angle = f64::from(i);
+            let along = Vec2::new(libm::cos(angle), libm::sin(angle));
+            let brute = segments.iter().filter_map(|&(p, q)| ray_segment(at, along, p, q)).fold(60.0, f64::min);
+            assert!((grid.ray(at, along, 60.0) - brute).abs() < 1e-9);
+        }
+    }
+}

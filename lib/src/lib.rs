@@ -1,0 +1,22 @@
+//! The generators of Rinceau.
+//!
+//! A generator is a pure function from a [`Scene`](rinceau_format::Scene) and its parameters
+//! to an [`Artwork`](rinceau_format::Artwork): same scene, parameters and seed, same bytes.
+//!
+//! | generator | from |
+//! |---|---|
+//! | [`pack`] | Saputra, Kaplan, Asente, Mech: *FLOWPAK: Flow-based ornamental element packing*, 2017 |
+
+pub mod field;
+pub mod generate;
+pub mod geom;
+pub mod pack;
+pub mod params;
+pub mod progress;
+pub mod rng;
+
+pub use generate::{GENERATORS, Generator, generate};
+pub use params::{ParamSpec, Values};
+pub use progress::{Deadline, Progress};
+pub use rinceau_format::Error;
+pub use rng::Rng;

@@ -1,0 +1,158 @@
+//! Which element goes where, and how wide (FLOWPAK 4.5, checklist F-044 to F-046).
+//!
+//! Departures. Equation (1) compares normalized LR functions; here every candidate is fitted
+//! on trial and judged by the area it would fill, which measures the stated goals directly at
+//! the same cost. And where the paper scales an element's width by one factor, the largest
+//! that stays in the blob, the factor here is a smooth function along each side that nowhere
+//! exceeds the room and varies by no more than `stretch`: `stretch = 1` is the paper's.
+
+use super::blob::Blob;
+use super::params::Params;
+use super::template::{BINS, Side, Template};
+use crate::field::LineKind;
+use crate::geom::bend::width_before;
+use crate::geom::spline::Profile;
+
+/// Spans of a width profile along an element.
+const SPANS: usize = 10;
+/// The wider side is at most this many times as wide as the other, in template widths.
+const MOST_UNEQUAL: f64 = 2.2;
+/// Width may be stretched against length by at most this factor, and squeezed by at most its
+/// inverse times [`SQUEEZE`].
+const MOST_ASPECT: f64 = 2.4;
+/// What is narrower than this against its own proportions reads as a thread.
+const SQUEEZE: f64 = 0.22;
+
+/// A template laid one of four ways (F-023).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Pose {
+    pub template: usize,
+    /// Reflected across the spine: sides swapped.
+    pub across: bool,
+    /// Reflected along the spine: base and tip swapped.
+    pub along: bool,
+}
+
+/// A pose with its widths.
+#[derive(Clone, Debug)]
+pub(super) struct Fit {
+    pub pose: Pose,
+    /// Part of the blob's length that is used.
+    pub from: f64,
+    pub to: f64,
+    /// Scale from template widths to user units, for v > 0 and v < 0.
+    pub width: [Profile; 2],
+    /// Area of the envelope.
+    pub area: f64,
+    /// Natural logarithm of how much wider than in proportion the element became.
+    pub distortion: f64,
+}
+
+/// Extents of a posed template on a side of the blob.
+fn extent(template: &Template, pose: Pose, side: usize, bin: usize) -> f64 {
+    let side = if pose.across { 1 - side } else { side };
+    let bin = if pose.along { BINS - 1 - bin } else { bin };
+    template.extents[side][bin]
+}
+
+/// The poses that make sense on a blob: half elements lie on the boundary, their flat side to
+/// it; full ones elsewhere, unless there are none.
+pub(super) fn poses(templates: &[Template], usable: &[usize], blob: &Blob) -> Vec<Pose> {
+    let on_boundary = blob.kind == LineKind::Boundary;
+    let has_full = usable.iter().any(|&t| templates[t].side == Side::Full);
+    let mut poses = Vec::new();
+    for &template in usable {
+        for (across, along) in [(false, false), (true, false), (false, true), (true, true)] {
+            let side = match (templates[template].side, across) {
+                (Side::Full, _) => Side::Full,
+                (Side::Left, false) | (Side::Right, true) => Side::Left,
+                _ => Side::Right,
+            };
+            let fits = if on_boundary { side == Side::Left } else { side == Side::Full || !has_full };
+            if fits {
+                poses.push(Pose { template, across, along });
+            }
+        }
+    }
+    poses
+}
+
+/// The widest smooth fit of a pose into a part of a blob. `None` if it would be a thread.
+/// `curvature` is that of the part, by bins.
+pub(super) fn fit(template: &Template, pose: Pose, blob: &Blob, (from, to): (f64, f64), curvature: Option<&[Vec<f64>; 2]>, params: &Params) -> Option<Fit> {
+    let along_scale = (to - from) * blob.length / template.length;
+    // Extents below this share of the widest do not limit the width: a tip has no width.
+    const TIP: f64 = 0.03;
+    let tip = TIP * template.half_width();
+    let mut bounds = [vec![f64::INFINITY; BINS], vec![f64::INFINITY; BINS]];
+    let mut least = f64::INFINITY;
+    for (side, bounds) in bounds.iter_mut().enumerate() {
+        for (i, bound) in bounds.iter_mut().enumerate() {
+            let extent = extent(template, pose, side, i);
+            if extent <= tip {
+                continue;
+            }
+            let room = blob.room[side][blob_bin(i, from, to)];
+            // Pulling in on the inner side of a bend makes room for more width before it.
+            const MOST_BEFORE: f64 = 4.0;
+            let k = curvature.map_or(0.0, |k| k[side][i]);
+            *bound = width_before(room, k, MOST_BEFORE) / extent;
+            least = least.min(*bound);
+        }
+    }
+    let least = least.min(MOST_ASPECT * along_scale);
+    if !(least > SQUEEZE * along_scale) {
+        return None;
+    }
+    let most = (least * params.stretch).min(MOST_ASPECT * along_scale);
+    for bound in bounds.iter_mut().flatten() {
+        *bound = bound.min(most);
+    }
+    let spans = if params.stretch > 1.0 { SPANS } else { 1 };
+    let [left, right] = bounds.map(|bounds| Profile::below(&bounds, spans));
+    let capped = |a: &Profile, b: &Profile| a.zip(b, |a, b| a.min(MOST_UNEQUAL * b));
+    let width = [capped(&left, &right), capped(&right, &left)];
+
+    let bin_length = (to - from) * blob.length / BINS as f64;
+    let (mut area, mut weight, mut scale) = (0.0, 0.0, 0.0);
+    for i in 0..BINS {
+        let u = (i as f64 + 0.5) / BINS as f64;
+        for (side, width) in width.iter().enumerate() {
+            let extent = extent(template, pose, side, i);
+            let s = width.jet(u).0;
+            // The share of the room is what counts, so widths are measured after pulling in.
+            area += (s * extent).min(blob.room[side][blob_bin(i, from, to)]) * bin_length;
+            weight += extent;
+            scale += s * extent;
+        }
+    }
+    Some(Fit { pose, from, to, width, area, distortion: libm::log(scale / weight.max(f64::MIN_POSITIVE) / along_scale) })
+}
+
+fn blob_bin(i: usize, from: f64, to: f64) -> usize {
+    let u = from + (to - from) * (i as f64 + 0.5) / BINS as f64;
+    ((u * BINS as f64) as usize).min(BINS - 1)
+}
+
+/// A fit with less cut off at the ends wins unless a pinch there makes the whole thin: tries
+/// some cuts and keeps the largest area.
+pub(super) fn trimmed(template: &Template, first: Fit, blob: &Blob, min_length: f64, params: &Params) -> Fit {
+    const CUTS: [f64; 4] = [0.0, 0.08, 0.18, 0.3];
+    // Length given up must pay: it is a gap in the flow as well.
+    const WORTH: f64 = 1.06;
+    let mut best = first;
+    for from in CUTS {
+        for cut in CUTS {
+            let part = (from, 1.0 - cut);
+            if (part.1 - part.0) * blob.length < min_length.min(0.7 * blob.length) {
+                continue;
+            }
+            if let Some(fit) = fit(template, best.pose, blob, part, None, params)
+                && fit.area > WORTH * best.area
+            {
+                best = fit;
+            }
+        }
+    }
+    best
+}

@@ -1,0 +1,85 @@
+//! What an artist can set.
+
+use crate::params::Kind;
+use rinceau_format::Length;
+
+/// Families of built-in elements, and the drawing's own.
+pub(super) const FAMILIES: &[(&str, &str)] = &[
+    ("auto", "My own if I drew any, else mixed"),
+    ("drawn", "My own"),
+    ("mixed", "Mixed"),
+    ("leaves", "Leaves"),
+    ("drops", "Drops"),
+    ("spirals", "Spirals"),
+    ("scales", "Scales"),
+    ("feathers", "Feathers"),
+];
+
+/// Colours for built-in elements.
+const PALETTES: &[(&str, &str)] = &[
+    ("auto", "To suit the shape's fill"),
+    ("lagoon", "Lagoon: deep teal, sea green, ochre"),
+    ("ember", "Ember: wine, brick, amber"),
+    ("meadow", "Meadow: forest, moss, straw"),
+    ("dusk", "Dusk: indigo, plum, rose"),
+    ("pale", "Pale: cream, sand, sky (for dark shapes)"),
+    ("ink", "Ink: black"),
+    ("white", "White (for dark shapes)"),
+];
+
+crate::params! {
+    /// Parameters of packing. Lengths of 0 are derived: see [`Sizes`].
+    pub struct Params {
+        #[doc = "How wide the elements are, roughly. Larger means fewer, bolder elements. 0 chooses from the size of the shape"]
+        spacing: Length = "spacing", "Element width", Basic, Kind::Length, "0";
+        #[doc = "Which elements fill the shape: a built-in family, or names, kinds or families of your own"]
+        elements: String = "elements", "Elements", Basic, Kind::Names(FAMILIES), "auto";
+        #[doc = "Empty distance kept between elements. No two ever come closer. 0 chooses an eighth of the element width"]
+        min_gap: Length = "min-gap", "Gap", Basic, Kind::Length, "0";
+        #[doc = "Colours of the built-in elements. Elements that you drew keep their own"]
+        palette: String = "palette", "Colours", Basic, Kind::Choice(PALETTES), "auto";
+        #[doc = "Longest element. 0 chooses five element widths"]
+        max_length: Length = "max-length", "Longest element", More, Kind::Length, "0";
+        #[doc = "Shortest element; where only a shorter one would fit, the space stays empty. 0 chooses 1.8 element widths"]
+        min_length: Length = "min-length", "Shortest element", More, Kind::Length, "0";
+        #[doc = "Empty distance kept from the outline of the shape. 0 chooses half the gap"]
+        edge: Length = "edge", "Distance from outline", More, Kind::Length, "0";
+        #[doc = "How freely an element's width may swell and shrink along its length to fill the space it has: 1 keeps its proportions, 3 is very free"]
+        stretch: f64 = "stretch", "Swelling", More, Kind::Number { min: 1.0, max: 3.0 }, "1.9";
+        #[doc = "How hard equal neighbours are avoided: 0 takes whatever fits best, 1 mixes as much as it can"]
+        variety: f64 = "variety", "Variety", More, Kind::Number { min: 0.0, max: 1.0 }, "0.5";
+        #[doc = "Which way elements point: with the arrows of the guides, or either way, whatever fits best"]
+        sense: String = "sense", "Pointing", More, Kind::Choice(&[("arrow", "With the arrows"), ("any", "Either way")]), "arrow";
+        #[doc = "Whether half elements line the outline where the flow runs along it"]
+        border: bool = "border", "Line the outline with half elements", More, Kind::Switch, "true";
+    }
+}
+
+/// The lengths of one run in user units, all derived.
+#[derive(Clone, Debug)]
+pub(super) struct Sizes {
+    pub spacing: f64,
+    pub min_length: f64,
+    pub max_length: f64,
+    pub gap: f64,
+    pub edge: f64,
+}
+
+impl Sizes {
+    /// `area` is that of everything to be filled.
+    pub fn new(params: &Params, area: f64, px_per_unit: f64) -> Self {
+        /// About this many elements fill the shapes when no width is given.
+        const ELEMENTS: f64 = 64.0;
+        let or = |length: Length, default: f64| {
+            let length = length.to_user(px_per_unit);
+            if length > 0.0 { length } else { default }
+        };
+        // An average element is this many times longer than its share of the width.
+        const ASPECT: f64 = 3.4;
+        let spacing = or(params.spacing, (area / (ELEMENTS * ASPECT)).sqrt());
+        let max_length = or(params.max_length, 5.0 * spacing);
+        let min_length = or(params.min_length, 1.8 * spacing).min(max_length);
+        let gap = or(params.min_gap, spacing / 8.0);
+        Sizes { spacing, min_length, max_length, gap, edge: or(params.edge, gap / 2.0) }
+    }
+}

@@ -1,0 +1,153 @@
+//! Elements and their LR functions (FLOWPAK 4.2, checklist F-020 to F-023).
+
+use crate::geom::flatten::flatten;
+use crate::geom::polyline::left_of;
+use kurbo::{Affine, BezPath, Point};
+use rinceau_format::{Element, Error, Style};
+
+/// Samples of an LR function: n = 100 gives sufficient granularity (4.2).
+pub(super) const BINS: usize = 100;
+
+/// An element as packing sees it: straightened along its spine.
+#[derive(Clone, Debug)]
+pub(super) struct Template {
+    pub id: String,
+    /// Built in, so that its colours are ours to choose.
+    pub builtin: bool,
+    /// Kind and families, to be asked for by name.
+    pub names: Vec<String>,
+    /// Paths in (u, v): u from 0 to 1 along the spine, v in user units; and their paint.
+    pub parts: Vec<(BezPath, Style)>,
+    /// Largest extent on the side v > 0 and v < 0 in each bin of u.
+    pub extents: [Vec<f64>; 2],
+    /// Length along the spine.
+    pub length: f64,
+    pub side: Side,
+    /// Half the widest stroke, in user units.
+    pub stroke: f64,
+}
+
+/// On which sides of its spine an element lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Side {
+    Full,
+    /// v > 0 only.
+    Left,
+    /// v < 0 only.
+    Right,
+}
+
+impl Template {
+    /// Straightens a drawn element.
+    ///
+    /// Errors: no spine; nothing drawn along it.
+    pub fn new(element: &Element, builtin: bool) -> Result<Self, Error> {
+        let source = &element.source;
+        let Some((base, tip)) = element.template.spine else {
+            return Err(source.error("no-spine", format!("The element '{}' has no spine", source.id), "Draw a straight line from its base to its tip, mark it as spine, and group it with the element"));
+        };
+        let along = (tip - base).normalize();
+        let normal = left_of(along);
+        // Rows (x, y) -> (distance along the spine, distance to its left).
+        let straight = Affine::new([along.x, normal.x, along.y, normal.y, -along.dot(base.to_vec2()), -normal.dot(base.to_vec2())]);
+        let spine_length = base.distance(tip);
+        let parts: Vec<(BezPath, Style, f64)> = element.template.parts.iter().map(|part| {
+            let scale = part.transform.determinant().abs().sqrt();
+            (straight * part.transform * part.path.clone(), part.style.scaled(scale, 6), part.style.stroke_width().unwrap_or(0.0) * scale / 2.0)
+        }).collect();
+        let tolerance = spine_length / 1000.0;
+        let outlines: Vec<Vec<Point>> = parts.iter().flat_map(|(path, ..)| flatten(path, tolerance)).map(|mut subpath| {
+            if subpath.has_close {
+                subpath.points.extend(subpath.points.first().copied());
+            }
+            subpath.points
+        }).collect();
+        let points = outlines.iter().flatten();
+        let (x0, x1) = points.fold((0.0f64, spine_length), |(x0, x1), p| (x0.min(p.x), x1.max(p.x)));
+        let to_uv = Affine::new([1.0 / (x1 - x0), 0.0, 0.0, 1.0, -x0 / (x1 - x0), 0.0]);
+
+        let stroke = parts.iter().map(|part| part.2).fold(0.0, f64::max);
+        let extents = extents(&outlines, to_uv, stroke);
+        let widest = [max(&extents[0]), max(&extents[1])];
+        if widest[0].max(widest[1]) <= 1e-6 * spine_length {
+            return Err(source.error("flat-element", format!("The element '{}' has no width beside its spine", source.id), "Draw its shapes around or beside the spine"));
+        }
+        // A half element may cross its spine by this share of its width: pen wobble.
+        const HALF: f64 = 0.06;
+        let side = if widest[1] <= HALF * widest[0] { Side::Left } else if widest[0] <= HALF * widest[1] { Side::Right } else { Side::Full };
+        let names = element.sets.iter().chain([&element.kind, &element.symbol, &source.id]).filter(|name| !name.is_empty()).cloned().collect();
+        Ok(Template {
+            id: source.id.clone(),
+            builtin,
+            names,
+            parts: parts.into_iter().map(|(path, style, _)| (to_uv * path, style)).collect(),
+            extents,
+            length: x1 - x0,
+            side,
+            stroke,
+        })
+    }
+
+    /// Widest extent on either side.
+    pub fn half_width(&self) -> f64 {
+        max(&self.extents[0]).max(max(&self.extents[1]))
+    }
+}
+
+fn max(values: &[f64]) -> f64 {
+    values.iter().copied().fold(0.0, f64::max)
+}
+
+/// Largest |v| of the outlines in each bin of u, on each side. Every part of a segment counts
+/// in the bin it passes, so a bin's extent is never less than what lies in it.
+fn extents(outlines: &[Vec<Point>], to_uv: Affine, stroke: f64) -> [Vec<f64>; 2] {
+    let mut extents = [vec![0.0f64; BINS], vec![0.0f64; BINS]];
+    for points in outlines {
+        for pair in points.windows(2) {
+            let (a, b) = (to_uv * pair[0], to_uv * pair[1]);
+            let (a, b) = if a.x <= b.x { (a, b) } else { (b, a) };
+            let bin = |u: f64| ((u * BINS as f64).max(0.0) as usize).min(BINS - 1);
+            for i in bin(a.x)..=bin(b.x) {
+                let at = |u: f64| if b.x > a.x { a.y + (b.y - a.y) * ((u - a.x) / (b.x - a.x)).clamp(0.0, 1.0) } else { a.y };
+                let ends = [at(i as f64 / BINS as f64), at((i + 1) as f64 / BINS as f64)];
+                let ends = if b.x > a.x { ends } else { [a.y, b.y] };
+                for v in ends {
+                    let side = usize::from(v < 0.0);
+                    extents[side][i] = extents[side][i].max(v.abs() + stroke);
+                }
+            }
+        }
+    }
+    extents
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rinceau_format::{Document, Selection};
+
+    fn template(body: &str) -> Result<Template, Error> {
+        let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 200 200'><g class='rinceau-element' id='e'>{body}</g></svg>");
+        let scene = Document::from_bytes(svg.into_bytes()).unwrap().scene(&Selection::default()).unwrap();
+        Template::new(&scene.elements[0], false)
+    }
+
+    #[test]
+    fn extents_follow_the_outline() {
+        // A rhombus of half width 10 on a spine of length 100 that points down.
+        let t = template("<path d='M50,50 60,100 50,150 40,100Z'/><path class='rinceau-spine' d='M50,50V150'/>").unwrap();
+        assert_eq!(t.side, Side::Full);
+        for side in &t.extents {
+            assert!((side[49] - 10.0).abs() < 1e-6 && (side[0] - 0.2).abs() < 1e-6, "{side:?}");
+        }
+        assert!((t.length - 100.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn half_elements_and_missing_spines_are_known() {
+        assert_eq!(template("<path d='M0,0 100,0 50,20Z'/><path class='rinceau-spine' d='M0,0H100'/>").unwrap().side, Side::Left);
+        assert_eq!(template("<path d='M0,0 100,0 50,-20Z'/><path class='rinceau-spine' d='M0,0H100'/>").unwrap().side, Side::Right);
+        assert_eq!(template("<path d='M0,0 100,0 50,20Z'/>").unwrap_err().code(), "no-spine");
+        assert_eq!(template("<path d='M0,0 100,0Z'/><path class='rinceau-spine' d='M0,0H100'/>").unwrap_err().code(), "flat-element");
+    }
+}

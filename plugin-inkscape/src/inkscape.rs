@@ -1,0 +1,125 @@
+//! Inkscape's side of the bargain: parameters come as flags, the file comes last, the drawing
+//! goes to standard output. Any text on standard error opens a dialog, and an empty output
+//! leaves the drawing as it is, so a failure writes the input back and one sentence.
+
+use crate::run::{self, Job};
+use crate::{check, output, progress};
+use rinceau::{Error, GENERATORS, Values};
+use rinceau_format::{Document, Role, Selection};
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+/// The window is frozen while an extension runs and cannot be cancelled, so a run ends by
+/// itself. The dialog may ask for less.
+const LONGEST_RUN: f64 = 30.0;
+
+/// True if the hidden parameter `tool` is there.
+pub fn called_by_inkscape(arguments: &[OsString]) -> bool {
+    arguments.iter().any(|argument| argument.to_string_lossy().starts_with("--tool="))
+}
+
+/// Runs the tool Inkscape asks for.
+pub fn run(arguments: &[OsString]) -> ExitCode {
+    let call = Call::parse(arguments);
+    let input = match output::read(call.file.as_deref()) {
+        Ok(input) => input,
+        Err(error) => return fail(&error),
+    };
+    match call.result(input.clone()).and_then(|bytes| output::write(None, &bytes)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // The drawing goes back unchanged, whatever happened.
+            let _ = output::write(None, &input);
+            fail(&error)
+        }
+    }
+}
+
+fn fail(error: &Error) -> ExitCode {
+    eprintln!("{error}");
+    ExitCode::from(1)
+}
+
+/// The parsed call.
+#[derive(Debug, Default)]
+struct Call {
+    tool: String,
+    ids: Vec<String>,
+    params: Vec<(String, String)>,
+    file: Option<PathBuf>,
+}
+
+impl Call {
+    fn parse(arguments: &[OsString]) -> Self {
+        let mut call = Call::default();
+        for argument in arguments {
+            let text = argument.to_string_lossy();
+            let flag = text.strip_prefix("--").and_then(|flag| flag.split_once('='));
+            match flag {
+                Some(("id", id)) => call.ids.push(id.to_owned()),
+                Some(("tool", tool)) => call.tool = tool.to_owned(),
+                // Which page of the dialog was open.
+                Some(("tab", _)) => {}
+                // Selected nodes; nothing here works on single nodes.
+                Some(("selected-nodes", _)) => {}
+                Some((name, value)) => call.params.push((name.replace('_', "-"), value.to_owned())),
+                None => call.file = Some(PathBuf::from(argument)),
+            }
+        }
+        call
+    }
+
+    fn result(mut self, input: Vec<u8>) -> Result<Vec<u8>, Error> {
+        if let Some(role) = self.tool.strip_prefix("mark-") {
+            if self.ids.is_empty() {
+                return Err(Error::new("nothing-selected", "Nothing is selected", "Select what you want to mark, then choose the entry again"));
+            }
+            let role = Role::from_name(role);
+            return Ok(Document::from_bytes(input)?.with_role(&self.ids, role)?.to_bytes());
+        }
+        if self.tool == "check" {
+            let document = Document::from_bytes(input.clone())?;
+            let scene = document.scene(&Selection::default())?;
+            // The dialog that standard error opens is what the artist asked for here.
+            eprintln!("{}", check::summary(&document, &scene)?);
+            return Ok(input);
+        }
+        let generator = GENERATORS.iter().find(|generator| generator.name == self.tool).ok_or_else(|| Error::new("unknown-tool", format!("This version has no tool '{}'", self.tool), "Run 'rinceau install' again"))?;
+        let seed = self.take("seed").and_then(|text| text.parse().ok()).unwrap_or(1);
+        let seconds: f64 = self.take("time-limit").and_then(|text| text.parse().ok()).unwrap_or(LONGEST_RUN);
+        let mut values = Values::default();
+        for (name, value) in &self.params {
+            let default = generator.table.iter().find(|spec| spec.name == name).map(|spec| spec.default);
+            // A dialog passes every parameter, with all the digits of its spin buttons.
+            let same_number = || value.parse::<f64>().ok().zip(default?.parse::<f64>().ok()).map(|(a, b)| a == b);
+            if default != Some(value) && same_number() != Some(true) {
+                values.set(generator.table, name, value)?;
+            }
+        }
+        let time_limit = Some(Duration::from_secs_f64(seconds.clamp(0.05, LONGEST_RUN)));
+        let mut progress = progress::Terminal::new();
+        let done = run::generate(Job { generator, values, seed, ids: self.ids, time_limit, bytes: input, progress: &mut progress })?;
+        Ok(done.document.to_bytes())
+    }
+
+    fn take(&mut self, name: &str) -> Option<String> {
+        let at = self.params.iter().position(|(other, _)| other == name)?;
+        Some(self.params.remove(at).1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_call_is_read_as_inkscape_writes_it() {
+        let arguments = ["--id=a b", "--id=c", "--tab=basic", "--tool=pack", "--min_gap=1.5", "/tmp/x=y.svg"].map(OsString::from);
+        assert!(called_by_inkscape(&arguments));
+        let call = Call::parse(&arguments);
+        assert_eq!((call.tool.as_str(), call.ids.len(), call.file), ("pack", 2, Some(PathBuf::from("/tmp/x=y.svg"))));
+        assert_eq!(call.params, [("min-gap".to_owned(), "1.5".to_owned())]);
+    }
+}

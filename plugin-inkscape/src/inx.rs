@@ -1,0 +1,218 @@
+//! Inkscape's extension descriptions, generated from the parameter tables.
+
+use rinceau::params::{Kind, Page, ParamSpec};
+use rinceau::{GENERATORS, Generator};
+use rinceau_format::Role;
+use xmlwriter::XmlWriter;
+
+const NAMESPACE: &str = "http://www.inkscape.org/namespace/inkscape/extension";
+const MENU: &str = "Ornament";
+
+/// Roles in the menu, with what the menu calls them.
+const MARKS: &[(&str, &str)] = &[
+    ("container", "Container (a shape to fill)"),
+    ("guide", "Guide (a line the flow follows)"),
+    ("fixed", "Fixed (kept clear and kept as it is)"),
+    ("element", "Element (a group to fill with)"),
+    ("spine", "Spine (from an element's base to its tip)"),
+    ("fixed-spine", "Fixed spine (a line an element must lie along)"),
+    ("none", "Clear marks"),
+];
+
+/// Every description: file name and content. `binary` is how the file names the program,
+/// with the ending that the system needs.
+pub fn all(binary: &str) -> Vec<(String, String)> {
+    let mut files = Vec::new();
+    for generator in GENERATORS {
+        files.push((format!("{}.inx", generator.name), dialog(generator, binary)));
+    }
+    for (role, title) in MARKS {
+        debug_assert!(*role == "none" || Role::from_name(role).is_some());
+        let tip = format!("Marks the selected objects: {}", title.to_lowercase());
+        files.push((format!("mark-{role}.inx"), command(&format!("mark-{role}"), title, &tip, &[MENU, "Mark as"], binary)));
+    }
+    files.push(("check.inx".to_owned(), command("check", "Check document", "Lists what is marked, and what is wrong with it", &[MENU], binary)));
+    files
+}
+
+struct Inx(XmlWriter);
+
+impl Inx {
+    fn new(tool: &str, title: &str) -> Self {
+        let mut xml = XmlWriter::new(xmlwriter::Options { indent: xmlwriter::Indent::Spaces(2), ..xmlwriter::Options::default() });
+        xml.write_declaration();
+        xml.start_element("inkscape-extension");
+        xml.write_attribute("xmlns", NAMESPACE);
+        let mut inx = Inx(xml);
+        inx.text("name", &[], title);
+        inx.text("id", &[], &format!("org.rinceau.{tool}"));
+        inx
+    }
+
+    fn text(&mut self, element: &str, attributes: &[(&str, &str)], text: &str) {
+        self.0.start_element(element);
+        for (name, value) in attributes {
+            self.0.write_attribute(name, *value);
+        }
+        self.0.set_preserve_whitespaces(true);
+        self.0.write_text(text);
+        self.0.end_element();
+        self.0.set_preserve_whitespaces(false);
+    }
+
+    fn hidden(&mut self, name: &str, value: &str) {
+        self.text("param", &[("name", name), ("type", "string"), ("gui-hidden", "true")], value);
+    }
+
+    fn finish(mut self, tip: &str, menus: &[&str], live_preview: bool, binary: &str) -> String {
+        let xml = &mut self.0;
+        xml.start_element("effect");
+        if !live_preview {
+            xml.write_attribute("needs-live-preview", "false");
+        }
+        xml.start_element("object-type");
+        xml.write_text("all");
+        xml.end_element();
+        xml.start_element("effects-menu");
+        for menu in menus {
+            xml.start_element("submenu");
+            xml.write_attribute("name", *menu);
+        }
+        for _ in menus {
+            xml.end_element();
+        }
+        xml.end_element();
+        xml.start_element("menu-tip");
+        xml.write_text(tip);
+        xml.end_element();
+        xml.end_element();
+        xml.start_element("script");
+        xml.start_element("command");
+        xml.write_attribute("location", "inx");
+        xml.write_text(binary);
+        self.0.end_document()
+    }
+}
+
+/// A menu entry without a dialog: it runs at once.
+fn command(tool: &str, title: &str, tip: &str, menus: &[&str], binary: &str) -> String {
+    let mut inx = Inx::new(tool, title);
+    inx.hidden("tool", tool);
+    inx.finish(tip, menus, false, binary)
+}
+
+fn dialog(generator: &Generator, binary: &str) -> String {
+    let mut inx = Inx::new(generator.name, generator.title);
+    inx.0.start_element("param");
+    inx.0.write_attribute("name", "tab");
+    inx.0.write_attribute("type", "notebook");
+    for (page, name, title) in [(Page::Basic, "basic", "Basic"), (Page::More, "more", "More")] {
+        inx.0.start_element("page");
+        inx.0.write_attribute("name", name);
+        inx.0.write_attribute("gui-text", title);
+        for spec in generator.table.iter().filter(|spec| spec.page == page) {
+            parameter(&mut inx, spec);
+        }
+        if page == Page::Basic {
+            number(&mut inx, "seed", "int", "Variation", "Another number, another composition", ("0", "99999", "1"), false);
+        } else {
+            number(&mut inx, "time-limit", "int", "Longest run in seconds", "After this long the best so far is used", ("1", "30", "20"), false);
+        }
+        inx.0.end_element();
+    }
+    inx.0.start_element("page");
+    inx.0.write_attribute("name", "help");
+    inx.0.write_attribute("gui-text", "Help");
+    for line in help(generator) {
+        inx.text("label", &[], line);
+    }
+    inx.0.end_element();
+    inx.0.end_element();
+    inx.hidden("tool", generator.name);
+    inx.finish(generator.about, &[MENU], true, binary)
+}
+
+/// What the help page says.
+fn help(generator: &Generator) -> &'static [&'static str] {
+    match generator.name {
+        "pack" => &[
+            "Select a closed shape and press Apply: it fills with ornament that follows its outline.",
+            "Select open lines together with it, and the ornament follows those.",
+            "For more, mark objects with Extensions > Ornament > Mark as: shapes to fill as containers, lines as guides, what must stay free as fixed, and your own leaves as elements, each grouped with a straight spine.",
+            "Run it again after a change: the layer is replaced, not added.",
+            "A length of 0 is chosen to suit the size of the shape. Lengths are in the units of the document.",
+        ],
+        _ => &[],
+    }
+}
+
+fn parameter(inx: &mut Inx, spec: &ParamSpec) {
+    match spec.kind {
+        Kind::Length => number(inx, spec.name, "float", spec.label, spec.help, ("0", "10000", spec.default), true),
+        Kind::Number { min, max } => number(inx, spec.name, "float", spec.label, spec.help, (&min.to_string(), &max.to_string(), spec.default), true),
+        Kind::Whole { min, max } => number(inx, spec.name, "int", spec.label, spec.help, (&min.to_string(), &max.to_string(), spec.default), false),
+        Kind::Choice(choices) | Kind::Names(choices) => {
+            inx.0.start_element("param");
+            common(inx, spec.name, "optiongroup", spec.label, spec.help);
+            inx.0.write_attribute("appearance", "combo");
+            for (value, label) in choices {
+                let mut attributes = vec![("value", *value)];
+                if *value == spec.default {
+                    attributes.push(("default", "true"));
+                }
+                inx.text("option", &attributes, label);
+            }
+            inx.0.end_element();
+        }
+        Kind::Switch => inx.text("param", &[("name", &name(spec.name)), ("type", "bool"), ("gui-text", spec.label), ("gui-description", spec.help)], spec.default),
+    }
+}
+
+fn number(inx: &mut Inx, param: &str, kind: &str, label: &str, help: &str, (min, max, default): (&str, &str, &str), decimals: bool) {
+    inx.0.start_element("param");
+    common(inx, param, kind, &format!("{label}:"), help);
+    inx.0.write_attribute("min", min);
+    inx.0.write_attribute("max", max);
+    if decimals {
+        inx.0.write_attribute("precision", "2");
+    }
+    inx.0.set_preserve_whitespaces(true);
+    inx.0.write_text(default);
+    inx.0.end_element();
+    inx.0.set_preserve_whitespaces(false);
+}
+
+fn common(inx: &mut Inx, param: &str, kind: &str, label: &str, help: &str) {
+    inx.0.write_attribute("name", &name(param));
+    inx.0.write_attribute("type", kind);
+    inx.0.write_attribute("gui-text", label);
+    inx.0.write_attribute("gui-description", help);
+}
+
+/// Inkscape's parameter names have no hyphens.
+fn name(param: &str) -> String {
+    param.replace('-', "_")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The committed descriptions are those the tables make. `RINCEAU_BLESS=1` rewrites them.
+    #[test]
+    fn committed_descriptions_are_current() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("inx");
+        let files = all("bin/rinceau");
+        if std::env::var_os("RINCEAU_BLESS").is_some() {
+            std::fs::create_dir_all(&folder).unwrap();
+            for (name, content) in &files {
+                std::fs::write(folder.join(name), content).unwrap();
+            }
+        }
+        for (name, content) in &files {
+            let committed = std::fs::read_to_string(folder.join(name)).unwrap_or_default();
+            assert_eq!(&committed, content, "{name} is stale: run the tests with RINCEAU_BLESS=1");
+        }
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), files.len());
+    }
+}

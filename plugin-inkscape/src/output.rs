@@ -1,0 +1,83 @@
+//! Reading the input and writing the output, whole or not at all.
+
+use rinceau_format::{Error, Limits};
+use std::fs::{self, File};
+use std::io::{self, IsTerminal, Read, Write};
+use std::path::{Path, PathBuf};
+
+/// Reads a file, or standard input, up to one byte more than the limit (which the document
+/// then refuses).
+pub fn read(path: Option<&Path>) -> Result<Vec<u8>, Error> {
+    let most = Limits::default().bytes as u64 + 1;
+    let mut bytes = Vec::new();
+    let result = match path {
+        Some(path) => File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes)),
+        None if io::stdin().is_terminal() => {
+            return Err(Error::new("no-input", "No drawing was given", "Name an SVG file, or pipe one to standard input"));
+        }
+        None => io::stdin().take(most).read_to_end(&mut bytes),
+    };
+    match result {
+        Ok(_) => Ok(bytes),
+        Err(error) => Err(Error::new("cannot-read", format!("The drawing '{}' cannot be read: {}", name(path), reason(&error)), "Check its name and that you may open it")),
+    }
+}
+
+/// Writes a file, or standard output, at once. A file appears whole under its name or stays
+/// as it was: a temporary file beside it is written, synced and renamed. A link stays a link,
+/// and permissions stay as they were. A name that ends in `.svgz` is compressed.
+pub fn write(path: Option<&Path>, bytes: &[u8]) -> Result<(), Error> {
+    let result = match path {
+        Some(path) if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svgz")) => gzip(bytes).and_then(|bytes| replace(path, &bytes)),
+        Some(path) => replace(path, bytes),
+        None => {
+            let mut out = io::stdout().lock();
+            out.write_all(bytes).and_then(|()| out.flush())
+        }
+    };
+    result.map_err(|error| Error::new("cannot-write", format!("'{}' cannot be written: {}", name(path), reason(&error)), "Check the folder, its permissions and the free space; nothing was changed"))
+}
+
+fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let target = match fs::canonicalize(path) {
+        Ok(target) => target,
+        Err(_) => path.to_owned(),
+    };
+    let existing = fs::metadata(&target).ok();
+    if existing.as_ref().is_some_and(|metadata| !metadata.is_file()) {
+        // A device or pipe such as /dev/stdout: there is nothing to replace.
+        return File::options().write(true).open(&target)?.write_all(bytes);
+    }
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).map_or_else(|| PathBuf::from("."), Path::to_owned);
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".rinceau-");
+    #[cfg(unix)]
+    builder.permissions({
+        use std::os::unix::fs::PermissionsExt;
+        // Narrowed by the umask, as for any new file.
+        fs::Permissions::from_mode(0o666)
+    });
+    let mut file = builder.tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    if let Some(metadata) = existing {
+        file.as_file().set_permissions(metadata.permissions())?;
+    }
+    file.as_file().sync_all()?;
+    file.persist(&target).map_err(|error| error.error)?;
+    Ok(())
+}
+
+fn gzip(bytes: &[u8]) -> io::Result<Vec<u8>> {
+    // No name and no time in the header: the same drawing is the same bytes.
+    let mut encoder = flate2::GzBuilder::new().mtime(0).write(Vec::new(), flate2::Compression::default());
+    encoder.write_all(bytes)?;
+    encoder.finish()
+}
+
+fn name(path: Option<&Path>) -> String {
+    path.map_or_else(|| "standard stream".to_owned(), |path| path.display().to_string())
+}
+
+fn reason(error: &io::Error) -> String {
+    error.to_string().split(" (os error").next().unwrap_or_default().to_lowercase()
+}
