@@ -63,11 +63,17 @@ impl Document {
             return Err(Error::new("empty-file", "The file is empty", "Save the drawing again as SVG"));
         }
         let options = ParsingOptions { allow_dtd: true, nodes_limit: u32::MAX, ..ParsingOptions::default() };
-        let xml = roxmltree::Document::parse_with_options(&self.text, options).map_err(|error| self.xml_error(&error))?;
+        let xml = roxmltree::Document::parse_with_options(&self.text, options)
+            .map_err(|error| self.xml_error(&error))?;
         let root = xml.root_element();
         if !read::is_svg_root(root) {
             let at = Position::of(&self.text, root.range().start);
-            return Err(Error::new("not-svg", format!("This is XML, but its root is <{}>, not <svg>", root.tag_name().name()), "Open an SVG drawing").at(at));
+            return Err(Error::new(
+                "not-svg",
+                format!("This is XML, but its root is <{}>, not <svg>", root.tag_name().name()),
+                "Open an SVG drawing",
+            )
+            .at(at));
         }
         f(&xml)
     }
@@ -82,6 +88,7 @@ impl Document {
         } else {
             ("broken-xml", format!("The drawing is damaged or cut short: {reason}"))
         };
-        Error::new(code, sentence, "Open it in Inkscape and save it again as SVG").at(Position { line, column })
+        Error::new(code, sentence, "Open it in Inkscape and save it again as SVG")
+            .at(Position { line, column })
     }
 }

@@ -65,7 +65,11 @@ fn gunzip(bytes: &[u8], limits: &Limits) -> Result<Vec<u8>, Error> {
     let mut out = Vec::new();
     let mut reader = flate2::read::MultiGzDecoder::new(bytes).take(limits.bytes as u64 + 1);
     reader.read_to_end(&mut out).map_err(|_| {
-        Error::new("broken-gzip", "The compressed drawing (svgz) is damaged or cut short", "Save it again, or use the uncompressed SVG")
+        Error::new(
+            "broken-gzip",
+            "The compressed drawing (svgz) is damaged or cut short",
+            "Save it again, or use the uncompressed SVG",
+        )
     })?;
     if out.len() > limits.bytes { Err(too_large(limits)) } else { Ok(out) }
 }

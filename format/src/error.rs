@@ -85,7 +85,8 @@ pub(crate) fn printable(text: &str) -> String {
             out.push('…');
             break;
         }
-        let bidirectional = matches!(c, '\u{200E}' | '\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}');
+        let bidirectional =
+            matches!(c, '\u{200E}' | '\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}');
         if c.is_control() || bidirectional {
             out.extend(c.escape_unicode());
         } else {

@@ -10,7 +10,15 @@ use std::collections::BTreeMap;
 
 /// Refuses text that exceeds the limits.
 pub(crate) fn prescan(text: &str, limits: &Limits) -> Result<(), Error> {
-    let mut scan = Scan { text, bytes: text.as_bytes(), limits, nodes: 0, depth: 0, expansion: 0, entities: BTreeMap::new() };
+    let mut scan = Scan {
+        text,
+        bytes: text.as_bytes(),
+        limits,
+        nodes: 0,
+        depth: 0,
+        expansion: 0,
+        entities: BTreeMap::new(),
+    };
     scan.run()
 }
 
@@ -39,7 +47,11 @@ impl<'a> Scan<'a> {
                 b'<' => {
                     self.nodes += 1;
                     if self.nodes > self.limits.nodes {
-                        return Err(self.over("too-many-nodes", at, format!("The drawing has more than {} objects", self.limits.nodes)));
+                        return Err(self.over(
+                            "too-many-nodes",
+                            at,
+                            format!("The drawing has more than {} objects", self.limits.nodes),
+                        ));
                     }
                     at = self.markup(at)?;
                 }
@@ -81,8 +93,16 @@ impl<'a> Scan<'a> {
                     at += 1;
                 }
                 b'=' => {
-                    let name_is_namespace = self.text[start..at].trim_end().rsplit(|c: char| c.is_whitespace() || c == '"' || c == '\'').next().is_some_and(|name| name == "xmlns" || name.starts_with("xmlns:"));
-                    if name_is_namespace { namespaces += 1 } else { attributes += 1 }
+                    let name_is_namespace = self.text[start..at]
+                        .trim_end()
+                        .rsplit(|c: char| c.is_whitespace() || c == '"' || c == '\'')
+                        .next()
+                        .is_some_and(|name| name == "xmlns" || name.starts_with("xmlns:"));
+                    if name_is_namespace {
+                        namespaces += 1
+                    } else {
+                        attributes += 1
+                    }
                     at += 1;
                 }
                 b'>' => {
@@ -95,11 +115,18 @@ impl<'a> Scan<'a> {
             }
         }
         if attributes > self.limits.attributes || namespaces > self.limits.namespaces {
-            let what = format!("An object has more than {} attributes or {} namespace declarations", self.limits.attributes, self.limits.namespaces);
+            let what = format!(
+                "An object has more than {} attributes or {} namespace declarations",
+                self.limits.attributes, self.limits.namespaces
+            );
             return Err(self.over("too-many-attributes", start, what));
         }
         if self.depth > self.limits.depth {
-            return Err(self.over("too-deep", start, format!("Objects are nested more than {} deep", self.limits.depth)));
+            return Err(self.over(
+                "too-deep",
+                start,
+                format!("Objects are nested more than {} deep", self.limits.depth),
+            ));
         }
         Ok(at + 1)
     }
@@ -110,8 +137,18 @@ impl<'a> Scan<'a> {
         if let Some(&cost) = self.entities.get(name) {
             self.expansion = self.expansion.saturating_add(cost.bytes);
             self.nodes = self.nodes.saturating_add(cost.tags);
-            if self.expansion > self.limits.expansion || self.nodes > self.limits.nodes || self.depth + cost.tags > self.limits.depth {
-                return Err(self.over("entity-expansion", at, format!("Entities such as '&{name};' expand to more than {} KiB", self.limits.expansion >> 10)));
+            if self.expansion > self.limits.expansion
+                || self.nodes > self.limits.nodes
+                || self.depth + cost.tags > self.limits.depth
+            {
+                return Err(self.over(
+                    "entity-expansion",
+                    at,
+                    format!(
+                        "Entities such as '&{name};' expand to more than {} KiB",
+                        self.limits.expansion >> 10
+                    ),
+                ));
             }
         }
         Ok(end)
@@ -138,9 +175,18 @@ impl<'a> Scan<'a> {
             } else {
                 match self.bytes[at] {
                     quote @ (b'"' | b'\'') => at = self.after(at + 1, if quote == b'"' { "\"" } else { "'" }),
-                    b'[' => { inside = true; at += 1; }
-                    b']' => { inside = false; at += 1; }
-                    b'>' if !inside => { at += 1; break; }
+                    b'[' => {
+                        inside = true;
+                        at += 1;
+                    }
+                    b']' => {
+                        inside = false;
+                        at += 1;
+                    }
+                    b'>' if !inside => {
+                        at += 1;
+                        break;
+                    }
                     _ => at += 1,
                 }
             }
@@ -158,7 +204,9 @@ impl<'a> Scan<'a> {
             let Some((name, _)) = reference_at(value, at) else { continue };
             let inner = match self.entities.get(name) {
                 Some(&inner) => inner,
-                None if declared.iter().any(|(other, _)| *other == name) => Cost { bytes: self.limits.expansion, tags: 0 },
+                None if declared.iter().any(|(other, _)| *other == name) => {
+                    Cost { bytes: self.limits.expansion, tags: 0 }
+                }
                 None => continue,
             };
             cost.bytes = cost.bytes.saturating_add(inner.bytes);
@@ -176,7 +224,10 @@ impl<'a> Scan<'a> {
         let mut value = None;
         while i < self.bytes.len() && self.bytes[i] != b'>' {
             if let quote @ (b'"' | b'\'') = self.bytes[i] {
-                let end = self.bytes[i + 1..].iter().position(|&b| b == quote).map_or(self.bytes.len(), |n| i + 1 + n);
+                let end = self.bytes[i + 1..]
+                    .iter()
+                    .position(|&b| b == quote)
+                    .map_or(self.bytes.len(), |n| i + 1 + n);
                 value = value.or(self.text.get(i + 1..end));
                 i = end;
             }
@@ -191,7 +242,8 @@ impl<'a> Scan<'a> {
     }
 
     fn over(&self, code: &'static str, at: usize, sentence: String) -> Error {
-        Error::new(code, sentence, "Copy what is to be filled into a new drawing").at(Position::of(self.text, at))
+        Error::new(code, sentence, "Copy what is to be filled into a new drawing")
+            .at(Position::of(self.text, at))
     }
 }
 
@@ -249,13 +301,16 @@ mod tests {
         assert_eq!(code(&(bomb + "]><s>&a11;</s>"), &limits), Some("entity-expansion"));
         let cycle = "<!DOCTYPE s [<!ENTITY a '&b;&b;'><!ENTITY b '&a;'>]><s>&a;</s>";
         assert_eq!(code(cycle, &limits), Some("entity-expansion"));
-        let quadratic = format!("<!DOCTYPE s [<!ENTITY a '{}'>]><s x='{}'/>", "x".repeat(10_000), "&a;".repeat(200));
+        let quadratic =
+            format!("<!DOCTYPE s [<!ENTITY a '{}'>]><s x='{}'/>", "x".repeat(10_000), "&a;".repeat(200));
         assert_eq!(code(&quadratic, &limits), Some("entity-expansion"));
     }
 
     #[test]
     fn malformed_text_ends() {
-        for text in ["<", "<!--", "<![CDATA[", "<!DOCTYPE [", "<!DOCTYPE x [<!ENTITY", "<a b='", "&", "<é='&", "</"] {
+        for text in
+            ["<", "<!--", "<![CDATA[", "<!DOCTYPE [", "<!DOCTYPE x [<!ENTITY", "<a b='", "&", "<é='&", "</"]
+        {
             let _ = prescan(text, &Limits::default());
         }
     }

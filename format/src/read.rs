@@ -15,13 +15,16 @@ use crate::scene::{Scene, Selection};
 /// Reads every annotated (or selected) object of a parsed drawing.
 ///
 /// Errors: see SPEC.md, "Reason codes". Nothing outside annotated objects can be an error.
-pub(crate) fn scene(xml: &roxmltree::Document, selection: &Selection, limits: &Limits) -> Result<Scene, Error> {
+pub(crate) fn scene(
+    xml: &roxmltree::Document,
+    selection: &Selection,
+    limits: &Limits,
+) -> Result<Scene, Error> {
     let resolver = resolver::Resolver::new(xml, limits)?;
     collect::walk(&resolver, selection)
 }
 
-pub(crate) use resolver::{Resolver, node_reference};
-pub(crate) use role::role_of;
+pub(crate) use resolver::Resolver;
 
 /// True for `<svg>`, with or without its namespace.
 pub(crate) fn is_svg_root(root: roxmltree::Node) -> bool {
@@ -34,5 +37,8 @@ pub(crate) fn layer_transform(resolver: &Resolver, layer: roxmltree::Node) -> ku
     let units = crate::units::Units { viewport: resolver.view.size(), em: 16.0 };
     let mut chain: Vec<_> = layer.ancestors().filter(|node| node.parent_element().is_some()).collect();
     chain.reverse();
-    chain.into_iter().map(|node| resolver::own_transform(node, &units).unwrap_or_default()).fold(kurbo::Affine::IDENTITY, |all, own| all * own)
+    chain
+        .into_iter()
+        .map(|node| resolver::own_transform(node, &units).unwrap_or_default())
+        .fold(kurbo::Affine::IDENTITY, |all, own| all * own)
 }

@@ -20,7 +20,8 @@ pub struct Recipe {
 impl Recipe {
     /// `rinceau:source`: ids separated by spaces, spaces inside an id as `%20`.
     pub fn source_attribute(&self) -> String {
-        let escaped: Vec<String> = self.sources.iter().map(|id| id.replace('%', "%25").replace(' ', "%20")).collect();
+        let escaped: Vec<String> =
+            self.sources.iter().map(|id| id.replace('%', "%25").replace(' ', "%20")).collect();
         escaped.join(" ")
     }
 

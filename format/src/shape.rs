@@ -49,7 +49,9 @@ fn length(node: Node, name: &str, axis: Axis, units: &Units) -> Result<Option<f6
     match node.attribute(name) {
         None => Ok(None),
         Some(text) if text.trim().is_empty() || text.trim() == "auto" => Ok(None),
-        Some(text) => units.resolve(text, axis).map(Some).ok_or_else(|| format!("its {name}='{text}' is not a length")),
+        Some(text) => {
+            units.resolve(text, axis).map(Some).ok_or_else(|| format!("its {name}='{text}' is not a length"))
+        }
     }
 }
 
@@ -153,7 +155,9 @@ impl PathBuilder {
             PathSegment::LineTo { x, y, .. } => self.line(point(x, y)),
             PathSegment::HorizontalLineTo { x, .. } => self.line(Point::new(x + from.x, self.at.y)),
             PathSegment::VerticalLineTo { y, .. } => self.line(Point::new(self.at.x, y + from.y)),
-            PathSegment::CurveTo { x1, y1, x2, y2, x, y, .. } => self.cubic(point(x1, y1), point(x2, y2), point(x, y)),
+            PathSegment::CurveTo { x1, y1, x2, y2, x, y, .. } => {
+                self.cubic(point(x1, y1), point(x2, y2), point(x, y))
+            }
             PathSegment::SmoothCurveTo { x2, y2, x, y, .. } => {
                 self.cubic(mirrored(cubic, self.at), point(x2, y2), point(x, y));
             }
@@ -217,7 +221,14 @@ impl PathBuilder {
 /// the arc is a straight line: a zero radius, equal ends, or numbers beyond f64.
 ///
 /// Own code, because the arc code of the usual crates does not end on huge coordinates.
-pub fn arc_to_cubics(from: Point, radii: Vec2, rotation: f64, large: bool, sweep: bool, to: Point) -> Option<Vec<[Point; 3]>> {
+pub fn arc_to_cubics(
+    from: Point,
+    radii: Vec2,
+    rotation: f64,
+    large: bool,
+    sweep: bool,
+    to: Point,
+) -> Option<Vec<[Point; 3]>> {
     let (mut rx, mut ry) = (radii.x.abs(), radii.y.abs());
     if rx == 0.0 || ry == 0.0 || from == to {
         return None;
@@ -261,7 +272,11 @@ pub fn arc_to_cubics(from: Point, radii: Vec2, rotation: f64, large: bool, sweep
     for i in 0..pieces as usize {
         let (a, b) = (start + step * i as f64, start + step * (i + 1) as f64);
         let ((sa, ca), (sb, cb)) = ((libm::sin(a), libm::cos(a)), (libm::sin(b), libm::cos(b)));
-        cubics.push([place(ca - handle * sa, sa + handle * ca), place(cb + handle * sb, sb - handle * cb), place(cb, sb)]);
+        cubics.push([
+            place(ca - handle * sa, sa + handle * ca),
+            place(cb + handle * sb, sb - handle * cb),
+            place(cb, sb),
+        ]);
     }
     if let Some(last) = cubics.last_mut() {
         last[2] = to;
@@ -281,7 +296,10 @@ mod tests {
             let ours = path(&data).unwrap();
             let theirs = BezPath::from_svg(&data).unwrap();
             let (a, b) = (ours.bounding_box(), theirs.bounding_box());
-            assert!((a.x0 - b.x0).abs() + (a.x1 - b.x1).abs() + (a.y0 - b.y0).abs() + (a.y1 - b.y1).abs() < 0.02, "{a:?} {b:?}");
+            assert!(
+                (a.x0 - b.x0).abs() + (a.x1 - b.x1).abs() + (a.y0 - b.y0).abs() + (a.y1 - b.y1).abs() < 0.02,
+                "{a:?} {b:?}"
+            );
         }
     }
 
@@ -294,7 +312,9 @@ mod tests {
     #[test]
     fn relative_smooth_and_closed_commands() {
         let ours = path("m1,1 h2 v2 z l-1,0 c0,1 1,1 1,0 s1,-1 1,0 q1,1 2,0 t2,0").unwrap();
-        let theirs = BezPath::from_svg("M1,1 L3,1 L3,3 Z M1,1 L0,1 C0,2 1,2 1,1 C1,0 2,0 2,1 Q3,2 4,1 Q5,0 6,1").unwrap();
+        let theirs =
+            BezPath::from_svg("M1,1 L3,1 L3,3 Z M1,1 L0,1 C0,2 1,2 1,1 C1,0 2,0 2,1 Q3,2 4,1 Q5,0 6,1")
+                .unwrap();
         assert_eq!(ours.elements(), theirs.elements());
     }
 

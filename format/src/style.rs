@@ -17,14 +17,36 @@ pub enum FillRule {
 
 /// Properties that children inherit, and that a placed copy must carry along.
 const INHERITED: [&str; 15] = [
-    "color", "fill", "fill-opacity", "fill-rule", "paint-order", "stroke", "stroke-dasharray",
-    "stroke-dashoffset", "stroke-linecap", "stroke-linejoin", "stroke-miterlimit", "stroke-opacity",
-    "stroke-width", "visibility", "shape-rendering",
+    "color",
+    "fill",
+    "fill-opacity",
+    "fill-rule",
+    "paint-order",
+    "stroke",
+    "stroke-dasharray",
+    "stroke-dashoffset",
+    "stroke-linecap",
+    "stroke-linejoin",
+    "stroke-miterlimit",
+    "stroke-opacity",
+    "stroke-width",
+    "visibility",
+    "shape-rendering",
 ];
 /// Inherited properties that only text needs.
 const TEXT: [&str; 12] = [
-    "font-family", "font-size", "font-stretch", "font-style", "font-variant", "font-weight", "letter-spacing",
-    "text-anchor", "text-decoration", "word-spacing", "writing-mode", "dominant-baseline",
+    "font-family",
+    "font-size",
+    "font-stretch",
+    "font-style",
+    "font-variant",
+    "font-weight",
+    "letter-spacing",
+    "text-anchor",
+    "text-decoration",
+    "word-spacing",
+    "writing-mode",
+    "dominant-baseline",
 ];
 /// Properties of one object alone.
 const OWN: [&str; 4] = ["display", "vector-effect", "transform", "transform-origin"];
@@ -103,7 +125,8 @@ impl Style {
         let mut style = self.clone();
         for name in ["stroke-width", "stroke-dashoffset", "stroke-dasharray"] {
             let Some(value) = style.properties.get_mut(name) else { continue };
-            let numbers: Option<Vec<f64>> = value.split([' ', ',']).filter(|t| !t.is_empty()).map(|t| t.parse().ok()).collect();
+            let numbers: Option<Vec<f64>> =
+                value.split([' ', ',']).filter(|t| !t.is_empty()).map(|t| t.parse().ok()).collect();
             let Some(numbers) = numbers else { continue };
             let mut text = String::new();
             for number in numbers {
@@ -114,7 +137,10 @@ impl Style {
             }
             *value = text;
         }
-        if factor != 1.0 && style.get("stroke").is_some_and(|s| s != "none") && style.get("stroke-width").is_none() {
+        if factor != 1.0
+            && style.get("stroke").is_some_and(|s| s != "none")
+            && style.get("stroke-width").is_none()
+        {
             let mut text = String::new();
             crate::number::write_number(&mut text, factor, decimals);
             style.properties.insert("stroke-width", text);
@@ -188,11 +214,20 @@ impl<'a> Cascade<'a> {
                 opacity = parse_opacity(&value).unwrap_or(1.0);
             } else if name == "font-size" {
                 let relative = Units { em: parent.font_size, viewport: units.viewport };
-                let percent = value.trim().strip_suffix('%').and_then(|p| p.parse::<f64>().ok()).map(|p| p / 100.0 * parent.font_size);
-                if let Some(size) = percent.or_else(|| relative.resolve(&value, Axis::Y)).filter(|s| s.is_finite() && *s >= 0.0) {
+                let percent = value
+                    .trim()
+                    .strip_suffix('%')
+                    .and_then(|p| p.parse::<f64>().ok())
+                    .map(|p| p / 100.0 * parent.font_size);
+                if let Some(size) = percent
+                    .or_else(|| relative.resolve(&value, Axis::Y))
+                    .filter(|s| s.is_finite() && *s >= 0.0)
+                {
                     style.font_size = size;
                 }
-            } else if let Some(&name) = INHERITED.iter().chain(&TEXT).chain(&OWN).find(|&&known| known == name) {
+            } else if let Some(&name) =
+                INHERITED.iter().chain(&TEXT).chain(&OWN).find(|&&known| known == name)
+            {
                 set_property(&mut style, parent, name, value.trim(), units);
             }
         }
@@ -243,7 +278,11 @@ fn set_property(style: &mut Style, parent: &Style, name: &'static str, value: &s
             _ => return,
         },
         "stroke-dasharray" if value != "none" => {
-            let lengths: Option<Vec<String>> = value.split([' ', ',']).filter(|t| !t.is_empty()).map(|t| units.resolve(t, Axis::Diagonal).map(|l| l.to_string())).collect();
+            let lengths: Option<Vec<String>> = value
+                .split([' ', ','])
+                .filter(|t| !t.is_empty())
+                .map(|t| units.resolve(t, Axis::Diagonal).map(|l| l.to_string()))
+                .collect();
             match lengths {
                 Some(lengths) => lengths.join(" "),
                 None => return,
@@ -304,13 +343,19 @@ mod tests {
 
     #[test]
     fn later_and_more_specific_declarations_win() {
-        let style = computed("<g fill='red' opacity='.5'><path class='a' stroke='blue' stroke-width='1%' style='stroke-opacity:.5;opacity:50%'/></g>", ".a{stroke:lime} path{stroke:black}");
+        let style = computed(
+            "<g fill='red' opacity='.5'><path class='a' stroke='blue' stroke-width='1%' style='stroke-opacity:.5;opacity:50%'/></g>",
+            ".a{stroke:lime} path{stroke:black}",
+        );
         assert_eq!(style.css(), "fill:red;stroke:lime;stroke-opacity:.5;stroke-width:1;opacity:0.25");
     }
 
     #[test]
     fn current_color_and_important() {
-        let style = computed("<g color='teal'><path fill='currentColor' style='stroke:red'/></g>", "path{stroke:blue !important}");
+        let style = computed(
+            "<g color='teal'><path fill='currentColor' style='stroke:red'/></g>",
+            "path{stroke:blue !important}",
+        );
         assert_eq!((style.get("fill"), style.get("stroke")), (Some("teal"), Some("blue")));
     }
 

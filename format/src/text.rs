@@ -16,7 +16,10 @@ const STACK: usize = 64 << 20;
 
 /// The outlines of a text element in its own coordinates. Err says what is missing.
 pub(crate) fn outlines(node: Node, style: &Style, resolver: &Resolver) -> Result<Vec<BezPath>, String> {
-    let mut xml = XmlWriter::new(xmlwriter::Options { indent: xmlwriter::Indent::None, ..xmlwriter::Options::default() });
+    let mut xml = XmlWriter::new(xmlwriter::Options {
+        indent: xmlwriter::Indent::None,
+        ..xmlwriter::Options::default()
+    });
     xml.start_element("svg");
     xml.write_attribute("xmlns", crate::vocabulary::SVG);
     xml.write_attribute("width", "100");
@@ -25,11 +28,20 @@ pub(crate) fn outlines(node: Node, style: &Style, resolver: &Resolver) -> Result
     let mut budget = LONGEST;
     write_text(&mut xml, node, style, resolver, (DEEPEST, &mut budget))?;
     let svg = xml.end_document();
-    let thread = std::thread::Builder::new().stack_size(STACK).spawn(move || lay_out(&svg)).map_err(|error| error.to_string())?;
+    let thread = std::thread::Builder::new()
+        .stack_size(STACK)
+        .spawn(move || lay_out(&svg))
+        .map_err(|error| error.to_string())?;
     thread.join().map_err(|_| "it cannot be laid out".to_owned())?
 }
 
-fn write_text(xml: &mut XmlWriter, node: Node, style: &Style, resolver: &Resolver, (depth, budget): (usize, &mut usize)) -> Result<(), String> {
+fn write_text(
+    xml: &mut XmlWriter,
+    node: Node,
+    style: &Style,
+    resolver: &Resolver,
+    (depth, budget): (usize, &mut usize),
+) -> Result<(), String> {
     if depth == 0 {
         return Err(format!("its spans are nested more than {DEEPEST} deep"));
     }
@@ -40,7 +52,10 @@ fn write_text(xml: &mut XmlWriter, node: Node, style: &Style, resolver: &Resolve
         }
     }
     xml.write_attribute("style", &style.text_css());
-    xml.write_attribute("xml:space", node.attribute(("http://www.w3.org/XML/1998/namespace", "space")).unwrap_or("default"));
+    xml.write_attribute(
+        "xml:space",
+        node.attribute(("http://www.w3.org/XML/1998/namespace", "space")).unwrap_or("default"),
+    );
     for child in node.children() {
         if child.is_text() {
             let text = child.text().unwrap_or("");

@@ -36,9 +36,17 @@ impl FromStr for Length {
 
     /// Errors on anything but a finite number with an optional absolute unit.
     fn from_str(text: &str) -> Result<Self, Error> {
-        let wrong = || Error::new("bad-length", format!("'{text}' is not a length"), "Write a number, with a unit if you like, such as 12 or 4mm");
+        let wrong = || {
+            Error::new(
+                "bad-length",
+                format!("'{text}' is not a length"),
+                "Write a number, with a unit if you like, such as 12 or 4mm",
+            )
+        };
         let length = svgtypes::Length::from_str(text.trim()).map_err(|_| wrong())?;
-        if !length.number.is_finite() || matches!(length.unit, LengthUnit::Percent | LengthUnit::Em | LengthUnit::Ex) {
+        if !length.number.is_finite()
+            || matches!(length.unit, LengthUnit::Percent | LengthUnit::Em | LengthUnit::Ex)
+        {
             return Err(wrong());
         }
         Ok(Length { number: length.number, unit: length.unit })

@@ -31,7 +31,11 @@ pub(crate) fn layer(artwork: &Artwork, recipe: &Recipe, target: &Target) -> Stri
     let prefix = target.svg_prefix;
     let _ = write!(out, "<{prefix}g");
     if target.has_namespace {
-        let name = if prefix.is_empty() { "xmlns".to_owned() } else { format!("xmlns:{}", prefix.trim_end_matches(':')) };
+        let name = if prefix.is_empty() {
+            "xmlns".to_owned()
+        } else {
+            format!("xmlns:{}", prefix.trim_end_matches(':'))
+        };
         attribute(&mut out, &name, SVG);
     }
     attribute(&mut out, "xmlns:inkscape", INKSCAPE);

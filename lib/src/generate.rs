@@ -28,7 +28,9 @@ pub const GENERATORS: &[Generator] = &[Generator {
     title: "Pack along flow",
     about: "Fill shapes with leaves, drops or your own elements that bend along a flow",
     table: pack::Params::TABLE,
-    run: |values, scene, rng, progress| pack::generate(&pack::Params::from_values(values), scene, rng, progress),
+    run: |values, scene, rng, progress| {
+        pack::generate(&pack::Params::from_values(values), scene, rng, progress)
+    },
 }];
 
 /// Runs a generator.

@@ -68,7 +68,11 @@ impl Values {
     pub fn set(&mut self, table: &'static [ParamSpec], name: &str, value: &str) -> Result<(), Error> {
         let Some(spec) = table.iter().find(|spec| spec.name == name) else {
             let known: Vec<&str> = table.iter().map(|spec| spec.name).collect();
-            return Err(Error::new("unknown-parameter", format!("There is no parameter '{name}'"), format!("Use one of {}", known.join(", "))));
+            return Err(Error::new(
+                "unknown-parameter",
+                format!("There is no parameter '{name}'"),
+                format!("Use one of {}", known.join(", ")),
+            ));
         };
         let value = value.trim();
         spec.check(value)?;
@@ -106,7 +110,13 @@ impl Values {
 impl ParamSpec {
     /// Errors if the parameter does not take this value; the sentence names its range.
     pub fn check(&self, value: &str) -> Result<(), Error> {
-        let wrong = |takes: String| Err(Error::new("bad-parameter", format!("{} cannot be '{value}'", self.name), format!("Give {takes}")));
+        let wrong = |takes: String| {
+            Err(Error::new(
+                "bad-parameter",
+                format!("{} cannot be '{value}'", self.name),
+                format!("Give {takes}"),
+            ))
+        };
         match self.kind {
             Kind::Length => match value.parse::<Length>() {
                 Ok(length) if length.to_user(1.0) >= 0.0 && length.to_user(1.0) <= 1e9 => Ok(()),

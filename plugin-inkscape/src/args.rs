@@ -20,22 +20,57 @@ pub fn command() -> Command {
         .subcommand_required(true)
         .arg_required_else_help(true);
     for generator in GENERATORS {
-        let mut sub = Command::new(generator.name).about(generator.about).arg(input()).arg(output()).arg(ids(false));
+        let mut sub =
+            Command::new(generator.name).about(generator.about).arg(input()).arg(output()).arg(ids(false));
         sub = sub
-            .arg(Arg::new("seed").long("seed").value_name("N").value_parser(clap::value_parser!(u64)).default_value("1").help("Another seed, another composition"))
-            .arg(Arg::new("report").long("report").value_name("FILE").value_parser(clap::value_parser!(std::path::PathBuf)).help("Write counts, warnings and timings as JSON"))
-            .arg(Arg::new("time-limit").long("time-limit").value_name("SECONDS").value_parser(seconds).help("Stop after this long and write the best so far"));
+            .arg(
+                Arg::new("seed")
+                    .long("seed")
+                    .value_name("N")
+                    .value_parser(clap::value_parser!(u64))
+                    .default_value("1")
+                    .help("Another seed, another composition"),
+            )
+            .arg(
+                Arg::new("report")
+                    .long("report")
+                    .value_name("FILE")
+                    .value_parser(clap::value_parser!(std::path::PathBuf))
+                    .help("Write counts, warnings and timings as JSON"),
+            )
+            .arg(
+                Arg::new("time-limit")
+                    .long("time-limit")
+                    .value_name("SECONDS")
+                    .value_parser(seconds)
+                    .help("Stop after this long and write the best so far"),
+            );
         for spec in generator.table {
             sub = sub.arg(parameter(spec));
         }
         command = command.subcommand(sub);
     }
     command
-        .subcommand(Command::new("mark").about("Give objects a role (or clear it)").arg(role()).arg(input()).arg(output()).arg(ids(true)))
-        .subcommand(Command::new("check").about("Say what the marks in a drawing mean, and what is wrong with them").arg(input()))
+        .subcommand(
+            Command::new("mark")
+                .about("Give objects a role (or clear it)")
+                .arg(role())
+                .arg(input())
+                .arg(output())
+                .arg(ids(true)),
+        )
+        .subcommand(
+            Command::new("check")
+                .about("Say what the marks in a drawing mean, and what is wrong with them")
+                .arg(input()),
+        )
         .subcommand(
             Command::new("install").about("Install the Inkscape extension for this user").arg(
-                Arg::new("dir").long("dir").value_name("DIR").value_parser(clap::value_parser!(std::path::PathBuf)).help("Inkscape's user extensions folder, if it is not the usual one"),
+                Arg::new("dir")
+                    .long("dir")
+                    .value_name("DIR")
+                    .value_parser(clap::value_parser!(std::path::PathBuf))
+                    .help("Inkscape's user extensions folder, if it is not the usual one"),
             ),
         )
 }
@@ -45,24 +80,42 @@ fn input() -> Arg {
 }
 
 fn output() -> Arg {
-    Arg::new("output").short('o').long("output").value_name("OUTPUT").help("Where to write; standard output if absent or '-'")
+    Arg::new("output")
+        .short('o')
+        .long("output")
+        .value_name("OUTPUT")
+        .help("Where to write; standard output if absent or '-'")
 }
 
 fn ids(required: bool) -> Arg {
-    Arg::new("id").long("id").value_name("ID").action(ArgAction::Append).required(required).help("An object by its id; may be given several times")
+    Arg::new("id")
+        .long("id")
+        .value_name("ID")
+        .action(ArgAction::Append)
+        .required(required)
+        .help("An object by its id; may be given several times")
 }
 
 fn role() -> Arg {
     let names = Role::ALL.iter().map(|role| role.name()).chain(["none"]);
-    Arg::new("role").value_name("ROLE").required(true).value_parser(names.collect::<Vec<_>>()).help("What the objects mean; 'none' clears")
+    Arg::new("role")
+        .value_name("ROLE")
+        .required(true)
+        .value_parser(names.collect::<Vec<_>>())
+        .help("What the objects mean; 'none' clears")
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
-    text.parse().ok().filter(|s: &f64| s.is_finite() && *s > 0.0).ok_or_else(|| "give a number of seconds above 0".to_owned())
+    text.parse()
+        .ok()
+        .filter(|s: &f64| s.is_finite() && *s > 0.0)
+        .ok_or_else(|| "give a number of seconds above 0".to_owned())
 }
 
 fn parameter(spec: &'static ParamSpec) -> Arg {
-    let check = move |text: &str| spec.check(text.trim()).map(|()| text.trim().to_owned()).map_err(|error| error.to_string());
+    let check = move |text: &str| {
+        spec.check(text.trim()).map(|()| text.trim().to_owned()).map_err(|error| error.to_string())
+    };
     let value = match spec.kind {
         Kind::Length => "LENGTH",
         Kind::Number { .. } => "NUMBER",
@@ -71,7 +124,11 @@ fn parameter(spec: &'static ParamSpec) -> Arg {
         Kind::Names(_) => "NAMES",
         Kind::Switch => "true|false",
     };
-    Arg::new(spec.name).long(spec.name).value_name(value).help(help(spec)).value_parser(ValueParser::from(check))
+    Arg::new(spec.name)
+        .long(spec.name)
+        .value_name(value)
+        .help(help(spec))
+        .value_parser(ValueParser::from(check))
 }
 
 /// The help text with values and default.

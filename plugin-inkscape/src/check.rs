@@ -13,7 +13,13 @@ pub fn run(document: &Document) -> Result<(), Error> {
 /// The text of the check.
 pub fn summary(document: &Document, scene: &Scene) -> Result<String, Error> {
     let mut out = String::new();
-    let _ = writeln!(out, "page {:.2} x {:.2}, one unit is {:.4} px", scene.view.width(), scene.view.height(), scene.px_per_unit);
+    let _ = writeln!(
+        out,
+        "page {:.2} x {:.2}, one unit is {:.4} px",
+        scene.view.width(),
+        scene.view.height(),
+        scene.px_per_unit
+    );
     let mut list = |role: &str, found: Vec<&rinceau_format::Source>| {
         for source in found {
             let _ = writeln!(out, "{}: {role} '{}'", source.at, source.id);
@@ -29,16 +35,24 @@ pub fn summary(document: &Document, scene: &Scene) -> Result<String, Error> {
     list("boundary", scene.boundaries.iter().map(|g| &g.source).collect());
     list("spray", scene.sprays.iter().map(|s| &s.source).collect());
     for element in scene.elements.iter().filter(|element| element.template.spine.is_none()) {
-        let _ = writeln!(out, "{}: the element '{}' has no spine, so pack cannot use it", element.source.at, element.source.id);
+        let _ = writeln!(
+            out,
+            "{}: the element '{}' has no spine, so pack cannot use it",
+            element.source.at, element.source.id
+        );
     }
     for layer in document.layers()? {
-        let _ = writeln!(out, "result of {} over {}", layer.recipe.generator, layer.recipe.sources.join(", "));
+        let _ =
+            writeln!(out, "result of {} over {}", layer.recipe.generator, layer.recipe.sources.join(", "));
     }
     for warning in &scene.warnings {
         let _ = writeln!(out, "{warning}");
     }
     if scene.containers.is_empty() {
-        let _ = writeln!(out, "nothing is marked as container: select a closed shape when you run a generator, or mark one");
+        let _ = writeln!(
+            out,
+            "nothing is marked as container: select a closed shape when you run a generator, or mark one"
+        );
     }
     Ok(out)
 }

@@ -74,7 +74,11 @@ impl Call {
     fn result(mut self, input: Vec<u8>) -> Result<Vec<u8>, Error> {
         if let Some(role) = self.tool.strip_prefix("mark-") {
             if self.ids.is_empty() {
-                return Err(Error::new("nothing-selected", "Nothing is selected", "Select what you want to mark, then choose the entry again"));
+                return Err(Error::new(
+                    "nothing-selected",
+                    "Nothing is selected",
+                    "Select what you want to mark, then choose the entry again",
+                ));
             }
             let role = Role::from_name(role);
             return Ok(Document::from_bytes(input)?.with_role(&self.ids, role)?.to_bytes());
@@ -86,21 +90,36 @@ impl Call {
             eprintln!("{}", check::summary(&document, &scene)?);
             return Ok(input);
         }
-        let generator = GENERATORS.iter().find(|generator| generator.name == self.tool).ok_or_else(|| Error::new("unknown-tool", format!("This version has no tool '{}'", self.tool), "Run 'rinceau install' again"))?;
+        let generator = GENERATORS.iter().find(|generator| generator.name == self.tool).ok_or_else(|| {
+            Error::new(
+                "unknown-tool",
+                format!("This version has no tool '{}'", self.tool),
+                "Run 'rinceau install' again",
+            )
+        })?;
         let seed = self.take("seed").and_then(|text| text.parse().ok()).unwrap_or(1);
         let seconds: f64 = self.take("time-limit").and_then(|text| text.parse().ok()).unwrap_or(LONGEST_RUN);
         let mut values = Values::default();
         for (name, value) in &self.params {
             let default = generator.table.iter().find(|spec| spec.name == name).map(|spec| spec.default);
             // A dialog passes every parameter, with all the digits of its spin buttons.
-            let same_number = || value.parse::<f64>().ok().zip(default?.parse::<f64>().ok()).map(|(a, b)| a == b);
+            let same_number =
+                || value.parse::<f64>().ok().zip(default?.parse::<f64>().ok()).map(|(a, b)| a == b);
             if default != Some(value) && same_number() != Some(true) {
                 values.set(generator.table, name, value)?;
             }
         }
         let time_limit = Some(Duration::from_secs_f64(seconds.clamp(0.05, LONGEST_RUN)));
         let mut progress = progress::Terminal::new();
-        let done = run::generate(Job { generator, values, seed, ids: self.ids, time_limit, bytes: input, progress: &mut progress })?;
+        let done = run::generate(Job {
+            generator,
+            values,
+            seed,
+            ids: self.ids,
+            time_limit,
+            bytes: input,
+            progress: &mut progress,
+        })?;
         Ok(done.document.to_bytes())
     }
 
@@ -116,10 +135,14 @@ mod tests {
 
     #[test]
     fn a_call_is_read_as_inkscape_writes_it() {
-        let arguments = ["--id=a b", "--id=c", "--tab=basic", "--tool=pack", "--min_gap=1.5", "/tmp/x=y.svg"].map(OsString::from);
+        let arguments = ["--id=a b", "--id=c", "--tab=basic", "--tool=pack", "--min_gap=1.5", "/tmp/x=y.svg"]
+            .map(OsString::from);
         assert!(called_by_inkscape(&arguments));
         let call = Call::parse(&arguments);
-        assert_eq!((call.tool.as_str(), call.ids.len(), call.file), ("pack", 2, Some(PathBuf::from("/tmp/x=y.svg"))));
+        assert_eq!(
+            (call.tool.as_str(), call.ids.len(), call.file),
+            ("pack", 2, Some(PathBuf::from("/tmp/x=y.svg")))
+        );
         assert_eq!(call.params, [("min-gap".to_owned(), "1.5".to_owned())]);
     }
 }

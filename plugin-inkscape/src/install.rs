@@ -11,10 +11,22 @@ use std::path::{Path, PathBuf};
 pub fn install(dir: Option<&Path>) -> Result<(), Error> {
     let extensions = match dir {
         Some(dir) => dir.to_owned(),
-        None => user_extensions().ok_or_else(|| Error::new("no-folder", "Inkscape's user folder is not known here", "Name it with --dir; Inkscape shows it under Edit > Preferences > System > User extensions"))?,
+        None => user_extensions().ok_or_else(|| {
+            Error::new(
+                "no-folder",
+                "Inkscape's user folder is not known here",
+                "Name it with --dir; Inkscape shows it under Edit > Preferences > System > User extensions",
+            )
+        })?,
     };
     let folder = extensions.join("rinceau");
-    let cannot = |what: &str, error: &std::io::Error| Error::new("cannot-install", format!("'{}' cannot be written: {error}", folder.join(what).display()), "Check the folder's permissions, or name another with --dir");
+    let cannot = |what: &str, error: &std::io::Error| {
+        Error::new(
+            "cannot-install",
+            format!("'{}' cannot be written: {error}", folder.join(what).display()),
+            "Check the folder's permissions, or name another with --dir",
+        )
+    };
     fs::create_dir_all(folder.join("bin")).map_err(|error| cannot("bin", &error))?;
     let program = if cfg!(windows) { "bin/rinceau.exe" } else { "bin/rinceau" };
     let own = std::env::current_exe().and_then(fs::read).map_err(|error| cannot(program, &error))?;
@@ -44,7 +56,10 @@ fn user_extensions() -> Option<PathBuf> {
         return Some(home("APPDATA")?.join("inkscape").join("extensions"));
     }
     if cfg!(target_os = "macos") {
-        return Some(home("HOME")?.join("Library/Application Support/org.inkscape.Inkscape/config/inkscape/extensions"));
+        return Some(
+            home("HOME")?
+                .join("Library/Application Support/org.inkscape.Inkscape/config/inkscape/extensions"),
+        );
     }
     let flatpak = home("HOME")?.join(".var/app/org.inkscape.Inkscape/config/inkscape");
     let native = home("XDG_CONFIG_HOME").unwrap_or(home("HOME")?.join(".config")).join("inkscape");

@@ -29,9 +29,21 @@ pub fn all(binary: &str) -> Vec<(String, String)> {
     for (role, title) in MARKS {
         debug_assert!(*role == "none" || Role::from_name(role).is_some());
         let tip = format!("Marks the selected objects: {}", title.to_lowercase());
-        files.push((format!("mark-{role}.inx"), command(&format!("mark-{role}"), title, &tip, &[MENU, "Mark as"], binary)));
+        files.push((
+            format!("mark-{role}.inx"),
+            command(&format!("mark-{role}"), title, &tip, &[MENU, "Mark as"], binary),
+        ));
     }
-    files.push(("check.inx".to_owned(), command("check", "Check document", "Lists what is marked, and what is wrong with it", &[MENU], binary)));
+    files.push((
+        "check.inx".to_owned(),
+        command(
+            "check",
+            "Check document",
+            "Lists what is marked, and what is wrong with it",
+            &[MENU],
+            binary,
+        ),
+    ));
     files
 }
 
@@ -39,7 +51,10 @@ struct Inx(XmlWriter);
 
 impl Inx {
     fn new(tool: &str, title: &str) -> Self {
-        let mut xml = XmlWriter::new(xmlwriter::Options { indent: xmlwriter::Indent::Spaces(2), ..xmlwriter::Options::default() });
+        let mut xml = XmlWriter::new(xmlwriter::Options {
+            indent: xmlwriter::Indent::Spaces(2),
+            ..xmlwriter::Options::default()
+        });
         xml.write_declaration();
         xml.start_element("inkscape-extension");
         xml.write_attribute("xmlns", NAMESPACE);
@@ -114,9 +129,25 @@ fn dialog(generator: &Generator, binary: &str) -> String {
             parameter(&mut inx, spec);
         }
         if page == Page::Basic {
-            number(&mut inx, "seed", "int", "Variation", "Another number, another composition", ("0", "99999", "1"), false);
+            number(
+                &mut inx,
+                "seed",
+                "int",
+                "Variation",
+                "Another number, another composition",
+                ("0", "99999", "1"),
+                false,
+            );
         } else {
-            number(&mut inx, "time-limit", "int", "Longest run in seconds", "After this long the best so far is used", ("1", "30", "20"), false);
+            number(
+                &mut inx,
+                "time-limit",
+                "int",
+                "Longest run in seconds",
+                "After this long the best so far is used",
+                ("1", "30", "20"),
+                false,
+            );
         }
         inx.0.end_element();
     }
@@ -148,9 +179,27 @@ fn help(generator: &Generator) -> &'static [&'static str] {
 
 fn parameter(inx: &mut Inx, spec: &ParamSpec) {
     match spec.kind {
-        Kind::Length => number(inx, spec.name, "float", spec.label, spec.help, ("0", "10000", spec.default), true),
-        Kind::Number { min, max } => number(inx, spec.name, "float", spec.label, spec.help, (&min.to_string(), &max.to_string(), spec.default), true),
-        Kind::Whole { min, max } => number(inx, spec.name, "int", spec.label, spec.help, (&min.to_string(), &max.to_string(), spec.default), false),
+        Kind::Length => {
+            number(inx, spec.name, "float", spec.label, spec.help, ("0", "10000", spec.default), true)
+        }
+        Kind::Number { min, max } => number(
+            inx,
+            spec.name,
+            "float",
+            spec.label,
+            spec.help,
+            (&min.to_string(), &max.to_string(), spec.default),
+            true,
+        ),
+        Kind::Whole { min, max } => number(
+            inx,
+            spec.name,
+            "int",
+            spec.label,
+            spec.help,
+            (&min.to_string(), &max.to_string(), spec.default),
+            false,
+        ),
         Kind::Choice(choices) | Kind::Names(choices) => {
             inx.0.start_element("param");
             common(inx, spec.name, "optiongroup", spec.label, spec.help);
@@ -164,11 +213,28 @@ fn parameter(inx: &mut Inx, spec: &ParamSpec) {
             }
             inx.0.end_element();
         }
-        Kind::Switch => inx.text("param", &[("name", &name(spec.name)), ("type", "bool"), ("gui-text", spec.label), ("gui-description", spec.help)], spec.default),
+        Kind::Switch => inx.text(
+            "param",
+            &[
+                ("name", &name(spec.name)),
+                ("type", "bool"),
+                ("gui-text", spec.label),
+                ("gui-description", spec.help),
+            ],
+            spec.default,
+        ),
     }
 }
 
-fn number(inx: &mut Inx, param: &str, kind: &str, label: &str, help: &str, (min, max, default): (&str, &str, &str), decimals: bool) {
+fn number(
+    inx: &mut Inx,
+    param: &str,
+    kind: &str,
+    label: &str,
+    help: &str,
+    (min, max, default): (&str, &str, &str),
+    decimals: bool,
+) {
     inx.0.start_element("param");
     common(inx, param, kind, &format!("{label}:"), help);
     inx.0.write_attribute("min", min);

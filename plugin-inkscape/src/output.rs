@@ -13,13 +13,21 @@ pub fn read(path: Option<&Path>) -> Result<Vec<u8>, Error> {
     let result = match path {
         Some(path) => File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes)),
         None if io::stdin().is_terminal() => {
-            return Err(Error::new("no-input", "No drawing was given", "Name an SVG file, or pipe one to standard input"));
+            return Err(Error::new(
+                "no-input",
+                "No drawing was given",
+                "Name an SVG file, or pipe one to standard input",
+            ));
         }
         None => io::stdin().take(most).read_to_end(&mut bytes),
     };
     match result {
         Ok(_) => Ok(bytes),
-        Err(error) => Err(Error::new("cannot-read", format!("The drawing '{}' cannot be read: {}", name(path), reason(&error)), "Check its name and that you may open it")),
+        Err(error) => Err(Error::new(
+            "cannot-read",
+            format!("The drawing '{}' cannot be read: {}", name(path), reason(&error)),
+            "Check its name and that you may open it",
+        )),
     }
 }
 
@@ -28,14 +36,22 @@ pub fn read(path: Option<&Path>) -> Result<Vec<u8>, Error> {
 /// and permissions stay as they were. A name that ends in `.svgz` is compressed.
 pub fn write(path: Option<&Path>, bytes: &[u8]) -> Result<(), Error> {
     let result = match path {
-        Some(path) if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svgz")) => gzip(bytes).and_then(|bytes| replace(path, &bytes)),
+        Some(path) if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svgz")) => {
+            gzip(bytes).and_then(|bytes| replace(path, &bytes))
+        }
         Some(path) => replace(path, bytes),
         None => {
             let mut out = io::stdout().lock();
             out.write_all(bytes).and_then(|()| out.flush())
         }
     };
-    result.map_err(|error| Error::new("cannot-write", format!("'{}' cannot be written: {}", name(path), reason(&error)), "Check the folder, its permissions and the free space; nothing was changed"))
+    result.map_err(|error| {
+        Error::new(
+            "cannot-write",
+            format!("'{}' cannot be written: {}", name(path), reason(&error)),
+            "Check the folder, its permissions and the free space; nothing was changed",
+        )
+    })
 }
 
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
@@ -48,7 +64,10 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         // A device or pipe such as /dev/stdout: there is nothing to replace.
         return File::options().write(true).open(&target)?.write_all(bytes);
     }
-    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).map_or_else(|| PathBuf::from("."), Path::to_owned);
+    let folder = target
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .map_or_else(|| PathBuf::from("."), Path::to_owned);
     let mut builder = tempfile::Builder::new();
     builder.prefix(".rinceau-");
     #[cfg(unix)]

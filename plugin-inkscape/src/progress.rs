@@ -24,7 +24,12 @@ pub struct Terminal {
 
 impl Terminal {
     pub fn new() -> Self {
-        let bar = std::io::stderr().is_terminal().then(|| indicatif::ProgressBar::new(1000).with_style(indicatif::ProgressStyle::with_template("{msg:12} {wide_bar}").unwrap_or_else(|_| indicatif::ProgressStyle::default_bar())));
+        let bar = std::io::stderr().is_terminal().then(|| {
+            indicatif::ProgressBar::new(1000).with_style(
+                indicatif::ProgressStyle::with_template("{msg:12} {wide_bar}")
+                    .unwrap_or_else(|_| indicatif::ProgressStyle::default_bar()),
+            )
+        });
         Terminal { deadline: Deadline::new(None), bar }
     }
 

@@ -31,9 +31,11 @@ pub fn generate(job: Job) -> Result<Done, Error> {
     let document = Document::from_bytes(job.bytes)?;
     let scene = document.scene(&Selection { ids: job.ids })?;
     job.progress.limit(job.time_limit);
-    let artwork = rinceau::generate(job.generator, &job.values, &scene, job.seed, job.progress.as_progress())?;
+    let artwork =
+        rinceau::generate(job.generator, &job.values, &scene, job.seed, job.progress.as_progress())?;
     job.progress.begin("write");
-    let labels: Vec<&str> = scene.containers.iter().map(|container| container.source.label.as_str()).collect();
+    let labels: Vec<&str> =
+        scene.containers.iter().map(|container| container.source.label.as_str()).collect();
     let recipe = Recipe {
         generator: job.generator.name.to_owned(),
         params: job.values.recipe(job.generator.table),
@@ -50,7 +52,8 @@ pub fn command(matches: &ArgMatches) -> Result<(), Error> {
     match name {
         "mark" => {
             let role = matches.get_one::<String>("role").and_then(|name| Role::from_name(name));
-            let document = Document::from_bytes(output::read(input(matches))?)?.with_role(&ids(matches), role)?;
+            let document =
+                Document::from_bytes(output::read(input(matches))?)?.with_role(&ids(matches), role)?;
             output::write(path(matches, "output"), &document.to_bytes())
         }
         "check" => check::run(&Document::from_bytes(output::read(input(matches))?)?),
@@ -70,13 +73,22 @@ fn generator_command(generator: &'static Generator, matches: &ArgMatches) -> Res
         }
     }
     let seed = *matches.get_one::<u64>("seed").unwrap_or(&1);
-    let time_limit = matches.get_one::<f64>("time-limit").map(|&seconds| Duration::from_secs_f64(seconds.min(1e9)));
+    let time_limit =
+        matches.get_one::<f64>("time-limit").map(|&seconds| Duration::from_secs_f64(seconds.min(1e9)));
     let start = Instant::now();
     let mut progress = progress::Terminal::new();
     progress.start("open");
     let bytes = output::read(input(matches))?;
     let recipe = values.recipe(generator.table);
-    let done = generate(Job { generator, values, seed, ids: ids(matches), time_limit, bytes, progress: &mut progress })?;
+    let done = generate(Job {
+        generator,
+        values,
+        seed,
+        ids: ids(matches),
+        time_limit,
+        bytes,
+        progress: &mut progress,
+    })?;
     let document = done.document.to_bytes();
     progress.start("save");
     output::write(path(matches, "output"), &document)?;
@@ -84,7 +96,8 @@ fn generator_command(generator: &'static Generator, matches: &ArgMatches) -> Res
         eprintln!("rinceau: note: {warning}");
     }
     if let Some(report) = matches.get_one::<PathBuf>("report") {
-        let stages: serde_json::Map<_, _> = progress.stages().iter().map(|(name, ms)| ((*name).to_owned(), json!(ms))).collect();
+        let stages: serde_json::Map<_, _> =
+            progress.stages().iter().map(|(name, ms)| ((*name).to_owned(), json!(ms))).collect();
         let report_json = json!({
             "generator": generator.name,
             "params": recipe,

@@ -62,8 +62,16 @@ impl Document {
                 if old.sources == recipe.sources {
                     mine = mine.or(Some(node));
                 } else if let Some(shared) = old.sources.iter().find(|id| recipe.sources.contains(id)) {
-                    let sentence = format!("'{shared}' is already filled, together with others, in the layer '{}'", label_of(node));
-                    return Err(Error::new("layer-overlap", sentence, "Fill all of that layer's shapes at once, or delete the layer first").at(self.position(node)));
+                    let sentence = format!(
+                        "'{shared}' is already filled, together with others, in the layer '{}'",
+                        label_of(node)
+                    );
+                    return Err(Error::new(
+                        "layer-overlap",
+                        sentence,
+                        "Fill all of that layer's shapes at once, or delete the layer first",
+                    )
+                    .at(self.position(node)));
                 }
             }
             match mine {
@@ -74,24 +82,46 @@ impl Document {
         Ok(Document { text, ..self.clone() })
     }
 
-    fn replaced(&self, xml: &roxmltree::Document, node: Node, artwork: &Artwork, recipe: &Recipe) -> Result<String, Error> {
+    fn replaced(
+        &self,
+        xml: &roxmltree::Document,
+        node: Node,
+        artwork: &Artwork,
+        recipe: &Recipe,
+    ) -> Result<String, Error> {
         let resolver = Resolver::new(xml, &self.limits)?;
         let full = layer_transform(&resolver, node);
         let inverse = full.inverse();
         if !inverse.is_finite() || full.determinant().abs() < 1e-12 {
-            return Err(Error::new("flat-layer", format!("The layer '{}' is scaled to nothing", label_of(node)), "Delete it and run again").at(self.position(node)));
+            return Err(Error::new(
+                "flat-layer",
+                format!("The layer '{}' is scaled to nothing", label_of(node)),
+                "Delete it and run again",
+            )
+            .at(self.position(node)));
         }
         let range = node.range();
         let element = &self.text[range.clone()];
         let (tag_end, closes) = start_tag_end(element);
-        let tag_name = element[1..].split(|c: char| c.is_whitespace() || c == '>' || c == '/').next().unwrap_or("g").to_owned();
+        let tag_name = element[1..]
+            .split(|c: char| c.is_whitespace() || c == '>' || c == '/')
+            .next()
+            .unwrap_or("g")
+            .to_owned();
         let id = node.attribute("id").map_or_else(|| free_id(xml, &recipe.label), str::to_owned);
         let newline = self.newline();
-        let target = Target { id: &id, svg_prefix: tag_name.strip_suffix('g').unwrap_or(""), has_namespace: node.tag_name().namespace() == Some(SVG), inverse, newline };
+        let target = Target {
+            id: &id,
+            svg_prefix: tag_name.strip_suffix('g').unwrap_or(""),
+            has_namespace: node.tag_name().namespace() == Some(SVG),
+            inverse,
+            newline,
+        };
 
         let mut edits = Vec::new();
         let params = serde_json::Value::Object(recipe.params.clone()).to_string();
-        let fresh = [("params", params), ("seed", recipe.seed.to_string()), ("source", recipe.source_attribute())];
+        let fresh =
+            [("params", params), ("seed", recipe.seed.to_string()), ("source", recipe.source_attribute())];
         let mut missing = String::new();
         for (name, value) in fresh {
             match node.attributes().find(|a| a.namespace() == Some(NAMESPACE) && a.name() == name) {
@@ -104,7 +134,11 @@ impl Document {
         }
         // The content uses these prefixes; whoever saved the drawing may have moved or
         // renamed the declarations, so those not in scope are declared again.
-        for (prefix, uri) in [("rinceau", NAMESPACE), ("inkscape", crate::vocabulary::INKSCAPE), ("sodipodi", crate::vocabulary::SODIPODI)] {
+        for (prefix, uri) in [
+            ("rinceau", NAMESPACE),
+            ("inkscape", crate::vocabulary::INKSCAPE),
+            ("sodipodi", crate::vocabulary::SODIPODI),
+        ] {
             if node.lookup_namespace_uri(Some(prefix)) != Some(uri) && !declares(node, prefix) {
                 attribute(&mut missing, &format!("xmlns:{prefix}"), uri);
             }
@@ -127,11 +161,18 @@ impl Document {
         let root = xml.root_element();
         let range = root.range();
         let element = &self.text[range.clone()];
-        let name = element[1..].split(|c: char| c.is_whitespace() || c == '>' || c == '/').next().unwrap_or("svg");
+        let name =
+            element[1..].split(|c: char| c.is_whitespace() || c == '>' || c == '/').next().unwrap_or("svg");
         let prefix = name.strip_suffix("svg").unwrap_or("");
         let id = free_id(xml, &recipe.label);
         let newline = self.newline();
-        let target = Target { id: &id, svg_prefix: prefix, has_namespace: root.tag_name().namespace() == Some(SVG), inverse: Affine::IDENTITY, newline };
+        let target = Target {
+            id: &id,
+            svg_prefix: prefix,
+            has_namespace: root.tag_name().namespace() == Some(SVG),
+            inverse: Affine::IDENTITY,
+            newline,
+        };
         let layer = write::layer(artwork, recipe, &target);
         let (tag_end, closes) = start_tag_end(element);
         let edit = if closes {
@@ -168,14 +209,29 @@ fn result_nodes<'a, 'i>(xml: &'a roxmltree::Document<'i>) -> Vec<Node<'a, 'i>> {
 fn read_recipe(document: &Document, node: Node) -> Result<Recipe, Error> {
     let get = |name: &str| node.attribute((NAMESPACE, name));
     let broken = |what: &str| {
-        Error::new("broken-recipe", format!("The recipe of the layer '{}' cannot be read: {what}", label_of(node)), "Delete the layer and run the generator again").at(document.position(node))
+        Error::new(
+            "broken-recipe",
+            format!("The recipe of the layer '{}' cannot be read: {what}", label_of(node)),
+            "Delete the layer and run the generator again",
+        )
+        .at(document.position(node))
     };
     let params = match serde_json::from_str(get("params").unwrap_or("{}")) {
         Ok(serde_json::Value::Object(params)) => params,
         _ => return Err(broken("rinceau:params is not a JSON object")),
     };
-    let seed = get("seed").unwrap_or("0").trim().parse().map_err(|_| broken("rinceau:seed is not a whole number"))?;
-    Ok(Recipe { generator: get("result").unwrap_or("").to_owned(), params, seed, sources: Recipe::parse_sources(get("source").unwrap_or("")), label: label_of(node) })
+    let seed = get("seed")
+        .unwrap_or("0")
+        .trim()
+        .parse()
+        .map_err(|_| broken("rinceau:seed is not a whole number"))?;
+    Ok(Recipe {
+        generator: get("result").unwrap_or("").to_owned(),
+        params,
+        seed,
+        sources: Recipe::parse_sources(get("source").unwrap_or("")),
+        label: label_of(node),
+    })
 }
 
 fn label_of(node: Node) -> String {
@@ -198,8 +254,16 @@ fn free_id(xml: &roxmltree::Document, label: &str) -> String {
         base => base.to_owned(),
     };
     // The ids of the layer's content start with the layer's, so no id may start with it.
-    let taken: HashSet<&str> = xml.descendants().filter_map(|node| node.attribute("id")).filter(|id| id.starts_with(&base)).collect();
-    let is_free = |id: &str| !taken.iter().any(|other| other.strip_prefix(id).is_some_and(|rest| rest.is_empty() || rest.starts_with('-')));
+    let taken: HashSet<&str> = xml
+        .descendants()
+        .filter_map(|node| node.attribute("id"))
+        .filter(|id| id.starts_with(&base))
+        .collect();
+    let is_free = |id: &str| {
+        !taken
+            .iter()
+            .any(|other| other.strip_prefix(id).is_some_and(|rest| rest.is_empty() || rest.starts_with('-')))
+    };
     let mut id = base.clone();
     let mut n = 1;
     while !is_free(&id) {

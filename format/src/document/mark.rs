@@ -36,7 +36,13 @@ impl Document {
             let resolver = Resolver::new(xml, &self.limits)?;
             let mut nodes: Vec<Node> = Vec::new();
             for id in ids {
-                let node = resolver.by_id(id, None)?.ok_or_else(|| Error::new("unknown-id", format!("No object has the id '{id}'"), "Check the id in Object > Object Properties"))?;
+                let node = resolver.by_id(id, None)?.ok_or_else(|| {
+                    Error::new(
+                        "unknown-id",
+                        format!("No object has the id '{id}'"),
+                        "Check the id in Object > Object Properties",
+                    )
+                })?;
                 if !nodes.contains(&node) {
                     nodes.push(node);
                 }
@@ -57,7 +63,9 @@ impl Document {
     /// The prefix of our namespace at the root, declared there if it is not.
     fn declare(&self, xml: &roxmltree::Document, edits: &mut Vec<(Range<usize>, String)>) -> String {
         let root = xml.root_element();
-        if let Some(namespace) = root.namespaces().find(|namespace| namespace.uri() == NAMESPACE && namespace.name().is_some()) {
+        if let Some(namespace) =
+            root.namespaces().find(|namespace| namespace.uri() == NAMESPACE && namespace.name().is_some())
+        {
             return namespace.name().unwrap_or("rinceau").to_owned();
         }
         let mut prefix = "rinceau".to_owned();
@@ -65,32 +73,59 @@ impl Document {
             prefix.push('_');
         }
         let range = root.range();
-        let name_end = range.start + self.text[range.start..].find(|c: char| c.is_whitespace() || c == '>' || c == '/').unwrap_or(4);
+        let name_end = range.start
+            + self.text[range.start..].find(|c: char| c.is_whitespace() || c == '>' || c == '/').unwrap_or(4);
         let mut declaration = String::new();
         attribute(&mut declaration, &format!("xmlns:{prefix}"), NAMESPACE);
         edits.push((name_end..name_end, declaration));
         prefix
     }
 
-    fn mark(&self, node: Node, role: Option<Role>, prefix: &str, edits: &mut Vec<(Range<usize>, String)>) -> Result<(), Error> {
+    fn mark(
+        &self,
+        node: Node,
+        role: Option<Role>,
+        prefix: &str,
+        edits: &mut Vec<(Range<usize>, String)>,
+    ) -> Result<(), Error> {
         let range = node.range();
         if !self.text[range.clone()].starts_with('<') {
-            return Err(Error::new("in-entity", "The object comes out of an entity", "Save the drawing in Inkscape first").at(self.position(node)));
+            return Err(Error::new(
+                "in-entity",
+                "The object comes out of an entity",
+                "Save the drawing in Inkscape first",
+            )
+            .at(self.position(node)));
         }
         let mut fresh = String::new();
-        let mut put = |own: Option<roxmltree::Attribute>, name: &str, value: Option<String>| match (own, value) {
-            (Some(own), Some(value)) => edits.push((own.range_value(), escaped(&value).replace('\'', "&#39;"))),
-            (Some(own), None) => {
-                let start = self.text[..own.range().start].trim_end().len();
-                edits.push((start..own.range().end, String::new()));
-            }
-            (None, Some(value)) => attribute(&mut fresh, name, &value),
-            (None, None) => {}
+        let mut put =
+            |own: Option<roxmltree::Attribute>, name: &str, value: Option<String>| match (own, value) {
+                (Some(own), Some(value)) => {
+                    edits.push((own.range_value(), escaped(&value).replace('\'', "&#39;")))
+                }
+                (Some(own), None) => {
+                    let start = self.text[..own.range().start].trim_end().len();
+                    edits.push((start..own.range().end, String::new()));
+                }
+                (None, Some(value)) => attribute(&mut fresh, name, &value),
+                (None, None) => {}
+            };
+        let find = |namespace: Option<&str>, name: &str| {
+            node.attributes().find(|a| a.namespace() == namespace && a.name() == name)
         };
-        let find = |namespace: Option<&str>, name: &str| node.attributes().find(|a| a.namespace() == namespace && a.name() == name);
-        put(find(Some(NAMESPACE), "role"), &format!("{prefix}:role"), role.map(|role| role.name().to_owned()));
-        let others: Vec<&str> = node.attribute("class").unwrap_or("").split_whitespace().filter(|token| Role::from_class(token).is_none()).collect();
-        let class = others.into_iter().map(str::to_owned).chain(role.map(Role::class)).collect::<Vec<_>>().join(" ");
+        put(
+            find(Some(NAMESPACE), "role"),
+            &format!("{prefix}:role"),
+            role.map(|role| role.name().to_owned()),
+        );
+        let others: Vec<&str> = node
+            .attribute("class")
+            .unwrap_or("")
+            .split_whitespace()
+            .filter(|token| Role::from_class(token).is_none())
+            .collect();
+        let class =
+            others.into_iter().map(str::to_owned).chain(role.map(Role::class)).collect::<Vec<_>>().join(" ");
         put(find(None, "class"), "class", Some(class).filter(|class| !class.is_empty()));
         if let Some(role) = role {
             let style = marked_style(node.attribute("style").unwrap_or(""), role);
@@ -113,7 +148,9 @@ impl Document {
         let p = name.strip_suffix("svg").unwrap_or("");
         let at = range.start + tag_end + 1;
         let newline = self.newline();
-        let marker = format!("{newline}<{p}defs><{p}marker id=\"{ARROW}\" orient=\"auto\" markerWidth=\"6\" markerHeight=\"6\" refX=\"4\" refY=\"3\"><{p}path d=\"M0,0L6,3L0,6Z\" style=\"fill:#ff0000\"/></{p}marker></{p}defs>");
+        let marker = format!(
+            "{newline}<{p}defs><{p}marker id=\"{ARROW}\" orient=\"auto\" markerWidth=\"6\" markerHeight=\"6\" refX=\"4\" refY=\"3\"><{p}path d=\"M0,0L6,3L0,6Z\" style=\"fill:#ff0000\"/></{p}marker></{p}defs>"
+        );
         (at..at, marker)
     }
 }
@@ -122,7 +159,10 @@ impl Document {
 fn marked_style(style: &str, role: Role) -> String {
     let colours = appearance(role);
     let mut out: Vec<String> = simplecss::DeclarationTokenizer::from(style)
-        .filter(|d| !colours.iter().any(|(name, _)| *name == d.name) && !(role == Role::Guide && d.name == "marker-end"))
+        .filter(|d| {
+            !colours.iter().any(|(name, _)| *name == d.name)
+                && !(role == Role::Guide && d.name == "marker-end")
+        })
         .map(|d| format!("{}:{}{}", d.name, d.value, if d.important { " !important" } else { "" }))
         .collect();
     out.extend(colours.iter().map(|(name, value)| format!("{name}:{value}")));

@@ -39,7 +39,11 @@ impl<'a, 'i> Resolver<'a, 'i> {
             }
         }
         if sheets.iter().map(|sheet| sheet.len()).sum::<usize>() > limits.style_sheet {
-            return Err(Error::new("style-too-large", "The drawing's style sheets are larger than 1 MiB", "Copy what is to be filled into a new drawing"));
+            return Err(Error::new(
+                "style-too-large",
+                "The drawing's style sheets are larger than 1 MiB",
+                "Copy what is to be filled into a new drawing",
+            ));
         }
         let (view, px_per_unit) = root_view(xml.root_element());
         Ok(Resolver { xml, limits, cascade: Cascade::new(&sheets), view, px_per_unit, ids, twice })
@@ -56,7 +60,11 @@ impl<'a, 'i> Resolver<'a, 'i> {
         if let Some(second) = self.twice.get(id).and_then(|&node| self.xml.get_node(node)) {
             let error = Error::new(
                 "duplicate-id",
-                format!("Two objects have the id '{id}', at {} and {}", self.position(first), self.position(second)),
+                format!(
+                    "Two objects have the id '{id}', at {} and {}",
+                    self.position(first),
+                    self.position(second)
+                ),
                 "Give one of them another id (Object > Object Properties)",
             );
             return Err(error.at(asked_at.unwrap_or_else(|| self.position(second))));
@@ -111,7 +119,10 @@ pub(crate) fn node_reference(node: Node) -> String {
 fn root_view(root: Node) -> (Rect, f64) {
     // Browsers' default size, for percentages of a drawing that states no size at all.
     const DEFAULT: Size = Size::new(300.0, 150.0);
-    let view = root.attribute("viewBox").and_then(units::view_box).filter(|view| view.width() > 0.0 && view.height() > 0.0);
+    let view = root
+        .attribute("viewBox")
+        .and_then(units::view_box)
+        .filter(|view| view.width() > 0.0 && view.height() > 0.0);
     let base = Units { viewport: view.map_or(DEFAULT, |view| view.size()), em: 16.0 };
     let side = |name, axis| {
         root.attribute(name)
@@ -130,7 +141,13 @@ fn root_view(root: Node) -> (Rect, f64) {
             };
             (view, scale)
         }
-        None => (Rect::from_origin_size((0.0, 0.0), (width.unwrap_or(DEFAULT.width), height.unwrap_or(DEFAULT.height))), 1.0),
+        None => (
+            Rect::from_origin_size(
+                (0.0, 0.0),
+                (width.unwrap_or(DEFAULT.width), height.unwrap_or(DEFAULT.height)),
+            ),
+            1.0,
+        ),
     }
 }
 
@@ -142,7 +159,12 @@ pub(crate) fn own_transform(node: Node, units: &Units) -> Result<Affine, String>
     let transform = units::transform(text).ok_or_else(|| "its transform cannot be read".to_owned())?;
     let Some(origin) = node.attribute("transform-origin") else { return Ok(transform) };
     let mut sides = origin.split_whitespace();
-    let mut side = |axis| sides.next().and_then(|text| keyword(text).or(Some(text)).and_then(|text| units.resolve(text, axis))).unwrap_or(0.0);
+    let mut side = |axis| {
+        sides
+            .next()
+            .and_then(|text| keyword(text).or(Some(text)).and_then(|text| units.resolve(text, axis)))
+            .unwrap_or(0.0)
+    };
     let (x, y) = (side(Axis::X), side(Axis::Y));
     Ok(Affine::translate((x, y)) * transform * Affine::translate((-x, -y)))
 }
@@ -165,17 +187,28 @@ fn css_transform(node: Node) -> Option<Affine> {
 
 /// The transform and viewport of a nested `<svg>` or an instanced `<symbol>`; `None` if it
 /// has no area and renders nothing. `size` is what a `<use>` sets.
-pub(crate) fn nested_viewport(node: Node, units: &Units, size: (Option<f64>, Option<f64>)) -> Option<(Affine, Size)> {
+pub(crate) fn nested_viewport(
+    node: Node,
+    units: &Units,
+    size: (Option<f64>, Option<f64>),
+) -> Option<(Affine, Size)> {
     let side = |name, axis| node.attribute(name).and_then(|text| units.resolve(text, axis));
     let is_symbol = node.tag_name().name() == "symbol";
     let width = size.0.or_else(|| side("width", Axis::X)).unwrap_or(units.viewport.width);
     let height = size.1.or_else(|| side("height", Axis::Y)).unwrap_or(units.viewport.height);
-    let (x, y) = if is_symbol { (0.0, 0.0) } else { (side("x", Axis::X).unwrap_or(0.0), side("y", Axis::Y).unwrap_or(0.0)) };
+    let (x, y) = if is_symbol {
+        (0.0, 0.0)
+    } else {
+        (side("x", Axis::X).unwrap_or(0.0), side("y", Axis::Y).unwrap_or(0.0))
+    };
     let place = Affine::translate((x, y));
     let Some(view) = node.attribute("viewBox").and_then(units::view_box) else {
         return Some((place, Size::new(width, height)));
     };
-    let aspect = node.attribute("preserveAspectRatio").and_then(|text| svgtypes::AspectRatio::from_str(text).ok()).unwrap_or_default();
+    let aspect = node
+        .attribute("preserveAspectRatio")
+        .and_then(|text| svgtypes::AspectRatio::from_str(text).ok())
+        .unwrap_or_default();
     let fit = units::view_box_transform(view, aspect, Size::new(width, height))?;
     Some((place * fit, view.size()))
 }

@@ -1,7 +1,7 @@
 //! Which role an object has: the attribute wins, the class stands in for it.
 
 use crate::error::Error;
-use crate::read::Resolver;
+use super::resolver::Resolver;
 use crate::vocabulary::{NAMESPACE, Role};
 use roxmltree::Node;
 
@@ -18,7 +18,12 @@ pub(crate) fn role_of(resolver: &Resolver, node: Node) -> Result<Option<(Role, O
     };
     let Some(role) = Role::from_name(name.trim()) else {
         let known: Vec<&str> = Role::ALL.iter().map(|role| role.name()).collect();
-        return Err(Error::new("unknown-role", format!("'{name}' is not a role"), format!("Use one of {}", known.join(", "))).at(resolver.position(node)));
+        return Err(Error::new(
+            "unknown-role",
+            format!("'{name}' is not a role"),
+            format!("Use one of {}", known.join(", ")),
+        )
+        .at(resolver.position(node)));
     };
     let warning = class.filter(|&class| class != role).map(|class| {
         let text = resolver.xml.input_text();
@@ -28,7 +33,11 @@ pub(crate) fn role_of(resolver: &Resolver, node: Node) -> Result<Option<(Role, O
         };
         let role_at = at(&|a| a.namespace() == Some(NAMESPACE) && a.name() == "role");
         let class_at = at(&|a| a.namespace().is_none() && a.name() == "class");
-        format!("{role_at}: rinceau:role says '{}' but the class at {class_at} says '{}'; the attribute is used", role.name(), class.name())
+        format!(
+            "{role_at}: rinceau:role says '{}' but the class at {class_at} says '{}'; the attribute is used",
+            role.name(),
+            class.name()
+        )
     });
     Ok(Some((role, warning)))
 }

@@ -99,7 +99,10 @@ impl DirectionField {
         let i = row * self.level.columns + column;
         let z = &self.level.z;
         let below = i + self.level.columns;
-        Some((1.0 - fy) * ((1.0 - fx) * z[i] + fx * z[i + 1]) + fy * ((1.0 - fx) * z[below] + fx * z[below + 1]))
+        Some(
+            (1.0 - fy) * ((1.0 - fx) * z[i] + fx * z[i + 1])
+                + fy * ((1.0 - fx) * z[below] + fx * z[below + 1]),
+        )
     }
 }
 
@@ -119,7 +122,13 @@ impl Level {
                 inside.push(region.contains(centre));
             }
         }
-        Level { columns, rows, z: vec![Vec2::ZERO; columns * rows], guide: vec![(Vec2::ZERO, 0.0); columns * rows], inside }
+        Level {
+            columns,
+            rows,
+            z: vec![Vec2::ZERO; columns * rows],
+            guide: vec![(Vec2::ZERO, 0.0); columns * rows],
+            inside,
+        }
     }
 
     /// Adds a guide's directions to the cells it passes. True if it passed any inside.
@@ -164,7 +173,13 @@ impl Level {
     /// The level with half the resolution.
     fn coarser(&self) -> Level {
         let (columns, rows) = (self.columns.div_ceil(2), self.rows.div_ceil(2));
-        let mut coarse = Level { columns, rows, z: vec![Vec2::ZERO; columns * rows], guide: vec![(Vec2::ZERO, 0.0); columns * rows], inside: vec![false; columns * rows] };
+        let mut coarse = Level {
+            columns,
+            rows,
+            z: vec![Vec2::ZERO; columns * rows],
+            guide: vec![(Vec2::ZERO, 0.0); columns * rows],
+            inside: vec![false; columns * rows],
+        };
         for row in 0..self.rows {
             for column in 0..self.columns {
                 let (i, j) = (row * self.columns + column, row / 2 * columns + column / 2);
@@ -210,10 +225,18 @@ impl Level {
                         weight += 1.0;
                     }
                 };
-                if column > 0 { link(i - 1) }
-                if column + 1 < self.columns { link(i + 1) }
-                if row > 0 { link(i - self.columns) }
-                if row + 1 < self.rows { link(i + self.columns) }
+                if column > 0 {
+                    link(i - 1)
+                }
+                if column + 1 < self.columns {
+                    link(i + 1)
+                }
+                if row > 0 {
+                    link(i - self.columns)
+                }
+                if row + 1 < self.rows {
+                    link(i + self.columns)
+                }
                 let (guide, guide_weight) = self.guide[i];
                 if guide_weight > 0.0 {
                     // Guides that contradict each other in one cell cancel, and the cell
@@ -251,7 +274,8 @@ impl Level {
                         continue;
                     }
                     let mut sum = Vec2::ZERO;
-                    for (r, c) in [(-1i64, 0i64), (1, 0), (0, -1), (0, 1), (-1, -1), (-1, 1), (1, -1), (1, 1)] {
+                    for (r, c) in [(-1i64, 0i64), (1, 0), (0, -1), (0, 1), (-1, -1), (-1, 1), (1, -1), (1, 1)]
+                    {
                         let (r, c) = (row as i64 + r, column as i64 + c);
                         if r >= 0 && c >= 0 && (r as usize) < self.rows && (c as usize) < self.columns {
                             let j = r as usize * self.columns + c as usize;
@@ -275,12 +299,16 @@ mod tests {
     use super::*;
 
     fn square() -> Region {
-        Region::new(vec![[(0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 100.0)].map(Point::from).to_vec()]).unwrap()
+        Region::new(vec![[(0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 100.0)].map(Point::from).to_vec()])
+            .unwrap()
     }
 
     #[test]
     fn opposite_guides_agree() {
-        let guides = [vec![Point::new(0.0, 10.0), Point::new(100.0, 10.0)], vec![Point::new(100.0, 90.0), Point::new(0.0, 90.0)]];
+        let guides = [
+            vec![Point::new(0.0, 10.0), Point::new(100.0, 10.0)],
+            vec![Point::new(100.0, 90.0), Point::new(0.0, 90.0)],
+        ];
         let field = DirectionField::new(&square(), &guides, 2.0).unwrap();
         for y in [5.0, 30.0, 50.0, 95.0] {
             let d = field.direction(Point::new(50.0, y), Vec2::new(1.0, 0.0)).unwrap();
@@ -290,13 +318,19 @@ mod tests {
 
     #[test]
     fn directions_turn_evenly_between_guides() {
-        let guides = [vec![Point::new(10.0, 0.0), Point::new(10.0, 100.0)], vec![Point::new(90.0, 50.0 - 40.0), Point::new(90.0 + 8.0, 50.0 - 40.0 + 8.0)]];
+        let guides = [
+            vec![Point::new(10.0, 0.0), Point::new(10.0, 100.0)],
+            vec![Point::new(90.0, 50.0 - 40.0), Point::new(90.0 + 8.0, 50.0 - 40.0 + 8.0)],
+        ];
         let field = DirectionField::new(&square(), &guides, 2.0).unwrap();
         assert!(field.direction(Point::new(12.0, 50.0), Vec2::new(0.0, 1.0)).unwrap().y > 0.99);
     }
 
     #[test]
     fn a_guide_outside_gives_no_field() {
-        assert!(DirectionField::new(&square(), &[vec![Point::new(200.0, 0.0), Point::new(300.0, 0.0)]], 2.0).is_none());
+        assert!(
+            DirectionField::new(&square(), &[vec![Point::new(200.0, 0.0), Point::new(300.0, 0.0)]], 2.0)
+                .is_none()
+        );
     }
 }

@@ -86,9 +86,24 @@ struct Seed(Reverse<(u64, u64)>, [u64; 2]);
 
 impl<'a> Tracer<'a> {
     /// A tracer with no lines yet. `most_steps` bounds the work.
-    pub fn new(region: &'a Region, field: &'a DirectionField, params: &'a StreamlineParams, rng: Rng, most_steps: usize) -> Self {
+    pub fn new(
+        region: &'a Region,
+        field: &'a DirectionField,
+        params: &'a StreamlineParams,
+        rng: Rng,
+        most_steps: usize,
+    ) -> Self {
         let taken = PointGrid::new(region.bounds(), params.stop());
-        Tracer { region, field, params, taken, lines: Vec::new(), seeds: BinaryHeap::new(), rng, steps_left: most_steps }
+        Tracer {
+            region,
+            field,
+            params,
+            taken,
+            lines: Vec::new(),
+            seeds: BinaryHeap::new(),
+            rng,
+            steps_left: most_steps,
+        }
     }
 
     /// Adds a place where a line may start; `distance` is that from boundary and guides.
@@ -147,15 +162,21 @@ impl<'a> Tracer<'a> {
         let mut directions = [Some(along), Some(-along)];
         // A line longer than this goes round and round.
         let most = (400.0 * self.params.spacing / self.params.step()) as usize;
-        while directions.iter().any(Option::is_some) && ends[0].len() + ends[1].len() < most && self.steps_left > 0 {
+        while directions.iter().any(Option::is_some)
+            && ends[0].len() + ends[1].len() < most
+            && self.steps_left > 0
+        {
             for side in 0..2 {
                 let Some(direction) = directions[side] else { continue };
                 self.steps_left = self.steps_left.saturating_sub(1);
                 let at = ends[side][ends[side].len() - 1];
-                directions[side] = self.step(at, direction).filter(|&(next, _)| self.free(next) && !self.meets_itself(next, &ends, side)).map(|(next, direction)| {
-                    ends[side].push(next);
-                    direction
-                });
+                directions[side] = self
+                    .step(at, direction)
+                    .filter(|&(next, _)| self.free(next) && !self.meets_itself(next, &ends, side))
+                    .map(|(next, direction)| {
+                        ends[side].push(next);
+                        direction
+                    });
             }
         }
         let [forward, mut line] = ends;
@@ -186,7 +207,8 @@ impl<'a> Tracer<'a> {
         let near = |p: &Point| p.distance_squared(next) < stop * stop;
         let own = &ends[side];
         let other = &ends[1 - side];
-        own[..own.len().saturating_sub(skip)].iter().any(near) || other.iter().skip(skip.saturating_sub(own.len())).any(near)
+        own[..own.len().saturating_sub(skip)].iter().any(near)
+            || other.iter().skip(skip.saturating_sub(own.len())).any(near)
     }
 
     /// Cuts a line into pieces of about equal length, keeps them, and sows both its sides.
@@ -199,7 +221,8 @@ impl<'a> Tracer<'a> {
         const MEAN: f64 = 0.78;
         let wanted = (MEAN * self.params.max_length).max(self.params.min_length);
         let most = (length / self.params.min_length).floor().max(1.0);
-        let pieces = if kind == LineKind::Fixed { 1 } else { (length / wanted).round().clamp(1.0, most) as usize };
+        let pieces =
+            if kind == LineKind::Fixed { 1 } else { (length / wanted).round().clamp(1.0, most) as usize };
         // Cuts move by up to a sixth of a piece, so that those of neighbours do not line up.
         const JITTER: f64 = 1.0 / 6.0;
         let mut cuts = vec![0.0];
@@ -226,7 +249,8 @@ impl<'a> Tracer<'a> {
     /// Seeds at one spacing on both sides of a line (F-036).
     fn sow(&mut self, points: &[Point], kind: LineKind) {
         // The half elements of the boundary are a little thicker than half a full one.
-        let spacing = self.params.spacing * if kind == LineKind::Boundary { 1.0 + BOUNDARY_BONUS } else { 1.0 };
+        let spacing =
+            self.params.spacing * if kind == LineKind::Boundary { 1.0 + BOUNDARY_BONUS } else { 1.0 };
         for (p, tangent) in points.iter().zip(polyline::tangents(points, false)) {
             for side in [spacing, -spacing] {
                 let at = *p + side * left_of(tangent);
@@ -262,7 +286,10 @@ mod tests {
 
     #[test]
     fn lines_are_evenly_spaced_and_inside() {
-        let region = Region::new(vec![[(0.0, 0.0), (300.0, 0.0), (300.0, 200.0), (0.0, 200.0)].map(Point::from).to_vec()]).unwrap();
+        let region = Region::new(vec![
+            [(0.0, 0.0), (300.0, 0.0), (300.0, 200.0), (0.0, 200.0)].map(Point::from).to_vec(),
+        ])
+        .unwrap();
         let guides = [vec![Point::new(10.0, 190.0), Point::new(150.0, 20.0), Point::new(290.0, 190.0)]];
         let field = DirectionField::new(&region, &guides, 4.0).unwrap();
         let params = StreamlineParams { spacing: 20.0, min_length: 30.0, max_length: 90.0, end_gap: 2.0 };

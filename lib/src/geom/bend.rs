@@ -125,7 +125,8 @@ impl Bend {
         while let Some((t0, e0, t1, e1, halvings)) = pieces.pop() {
             let h = (t1 - t0) / 3.0;
             let cubic = CubicBez::new(e0.0, e0.0 + h * e0.1, e1.0 - h * e1.1, e1.0);
-            let near = |s: f64| self.map(source.eval(t0 + s * (t1 - t0))).p.distance(cubic.eval(s)) <= tolerance;
+            let near =
+                |s: f64| self.map(source.eval(t0 + s * (t1 - t0))).p.distance(cubic.eval(s)) <= tolerance;
             if halvings == MOST_HALVINGS || (near(0.5) && near(0.2) && near(0.8)) {
                 out.curve_to(cubic.p1, cubic.p2, cubic.p3);
             } else {

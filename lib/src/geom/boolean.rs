@@ -57,7 +57,10 @@ pub fn stroked(points: &[Point], closed: bool, width: f64) -> Vec<Contour> {
     }
     // As fine as the round corners of `offset`.
     const CORNER_STEP: f64 = 0.2;
-    let style = StrokeStyle::new(width).line_join(LineJoin::Round(CORNER_STEP)).start_cap(LineCap::Round(CORNER_STEP)).end_cap(LineCap::Round(CORNER_STEP));
+    let style = StrokeStyle::new(width)
+        .line_join(LineJoin::Round(CORNER_STEP))
+        .start_cap(LineCap::Round(CORNER_STEP))
+        .end_cap(LineCap::Round(CORNER_STEP));
     let path: Vec<[f64; 2]> = points.iter().map(|p| [p.x, p.y]).collect();
     out(path.stroke_as::<i64>(style, closed))
 }
@@ -89,7 +92,11 @@ fn raw(contours: &[Contour]) -> Vec<Vec<[f64; 2]>> {
 }
 
 fn out(shapes: Raw) -> Vec<Contour> {
-    shapes.into_iter().flatten().map(|contour| contour.into_iter().map(|[x, y]| Point::new(x, y)).collect()).collect()
+    shapes
+        .into_iter()
+        .flatten()
+        .map(|contour| contour.into_iter().map(|[x, y]| Point::new(x, y)).collect())
+        .collect()
 }
 
 #[cfg(test)]

@@ -30,7 +30,9 @@ pub fn flatten(path: &BezPath, tolerance: f64) -> Vec<Subpath> {
             }
             PathEl::LineTo(p) => current.push(p),
             PathEl::QuadTo(a, p) => chords(kurbo::QuadBez::new(at, a, p).into(), tolerance, &mut current),
-            PathEl::CurveTo(a, b, p) => chords(kurbo::CubicBez::new(at, a, b, p).into(), tolerance, &mut current),
+            PathEl::CurveTo(a, b, p) => {
+                chords(kurbo::CubicBez::new(at, a, b, p).into(), tolerance, &mut current)
+            }
             PathEl::ClosePath => {
                 let start = current.first().copied();
                 finish(&mut subpaths, &mut current, true, tolerance);

@@ -64,7 +64,8 @@ impl PointGrid {
 
     /// Visits the points within `radius` (and some beyond), until `visit` says false.
     pub fn visit(&self, at: Point, radius: f64, mut visit: impl FnMut(Point, u32) -> bool) {
-        let (low, high) = (Point::new(at.x - radius, at.y - radius), Point::new(at.x + radius, at.y + radius));
+        let (low, high) =
+            (Point::new(at.x - radius, at.y - radius), Point::new(at.x + radius, at.y + radius));
         for index in self.cells.covered(low, high) {
             for &(p, owner) in &self.content[index] {
                 if !visit(p, owner) {
@@ -222,7 +223,12 @@ mod tests {
     fn distances_and_rays_agree_with_brute_force() {
         let mut rng = Rng::new(1);
         let mut point = || Point::new(rng.between(0.0, 100.0), rng.between(0.0, 100.0));
-        let segments: Vec<(Point, Point)> = (0..200).map(|_| { let p = point(); (p, p.lerp(point(), 0.1)) }).collect();
+        let segments: Vec<(Point, Point)> = (0..200)
+            .map(|_| {
+                let p = point();
+                (p, p.lerp(point(), 0.1))
+            })
+            .collect();
         let mut grid = SegmentGrid::new(Rect::new(0.0, 0.0, 100.0, 100.0), 3.0);
         segments.iter().for_each(|&(p, q)| grid.insert(p, q, 0));
         for i in 0..200 {
@@ -231,7 +237,8 @@ mod tests {
             assert!((grid.distance(at, 50.0) - brute).abs() < 1e-12);
             let angle = f64::from(i);
             let along = Vec2::new(libm::cos(angle), libm::sin(angle));
-            let brute = segments.iter().filter_map(|&(p, q)| ray_segment(at, along, p, q)).fold(60.0, f64::min);
+            let brute =
+                segments.iter().filter_map(|&(p, q)| ray_segment(at, along, p, q)).fold(60.0, f64::min);
             assert!((grid.ray(at, along, 60.0) - brute).abs() < 1e-9);
         }
     }

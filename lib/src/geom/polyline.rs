@@ -52,8 +52,20 @@ pub fn tangents(points: &[Point], closed: bool) -> Vec<Vec2> {
     let n = points.len();
     (0..n)
         .map(|i| {
-            let before = if i > 0 { points[i - 1] } else if closed { points[n - 1] } else { points[0] };
-            let after = if i + 1 < n { points[i + 1] } else if closed { points[0] } else { points[n - 1] };
+            let before = if i > 0 {
+                points[i - 1]
+            } else if closed {
+                points[n - 1]
+            } else {
+                points[0]
+            };
+            let after = if i + 1 < n {
+                points[i + 1]
+            } else if closed {
+                points[0]
+            } else {
+                points[n - 1]
+            };
             let v = after - before;
             if v.hypot() > 0.0 { v.normalize() } else { Vec2::ZERO }
         })

@@ -24,7 +24,8 @@ impl Region {
         let bounds = points.fold(Rect::from_points(first, first), |bounds, &p| bounds.union_pt(p));
         let count: usize = contours.iter().map(Vec::len).sum();
         // About one edge per cell along the boundary.
-        let cell = (bounds.width().max(bounds.height()) / (count as f64).sqrt().clamp(8.0, 512.0)).max(f64::MIN_POSITIVE);
+        let cell = (bounds.width().max(bounds.height()) / (count as f64).sqrt().clamp(8.0, 512.0))
+            .max(f64::MIN_POSITIVE);
         let mut edges = SegmentGrid::new(bounds, cell);
         let rows = (count / 2).clamp(1, 1024);
         let band = (bounds.height() / rows as f64).max(f64::MIN_POSITIVE);
@@ -95,7 +96,9 @@ mod tests {
 
     #[test]
     fn inside_distance_and_ray_know_holes() {
-        let square = |x: f64, side: f64| [(x, x), (x + side, x), (x + side, x + side), (x, x + side)].map(Point::from).to_vec();
+        let square = |x: f64, side: f64| {
+            [(x, x), (x + side, x), (x + side, x + side), (x, x + side)].map(Point::from).to_vec()
+        };
         let region = Region::new(vec![square(0.0, 10.0), square(4.0, 2.0)]).unwrap();
         assert!(region.contains(Point::new(2.0, 5.0)));
         assert!(!region.contains(Point::new(5.0, 5.0)));

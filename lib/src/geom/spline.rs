@@ -9,7 +9,12 @@ use kurbo::{Point, Vec2};
 fn basis(t: f64) -> ([f64; 4], [f64; 4], [f64; 4]) {
     let (t2, t3, m) = (t * t, t * t * t, 1.0 - t);
     (
-        [m * m * m / 6.0, (3.0 * t3 - 6.0 * t2 + 4.0) / 6.0, (-3.0 * t3 + 3.0 * t2 + 3.0 * t + 1.0) / 6.0, t3 / 6.0],
+        [
+            m * m * m / 6.0,
+            (3.0 * t3 - 6.0 * t2 + 4.0) / 6.0,
+            (-3.0 * t3 + 3.0 * t2 + 3.0 * t + 1.0) / 6.0,
+            t3 / 6.0,
+        ],
         [-m * m / 2.0, (3.0 * t2 - 4.0 * t) / 2.0, (-3.0 * t2 + 2.0 * t + 1.0) / 2.0, t2 / 2.0],
         [m, 3.0 * t - 2.0, 1.0 - 3.0 * t, t],
     )
@@ -59,10 +64,16 @@ impl Curve {
         let (span, t) = locate(clamped, spans);
         let (b, d, dd) = basis(t);
         let c = &self.coefficients[span..span + 4];
-        let sum = |w: [f64; 4]| w[0] * c[0].to_vec2() + w[1] * c[1].to_vec2() + w[2] * c[2].to_vec2() + w[3] * c[3].to_vec2();
+        let sum = |w: [f64; 4]| {
+            w[0] * c[0].to_vec2() + w[1] * c[1].to_vec2() + w[2] * c[2].to_vec2() + w[3] * c[3].to_vec2()
+        };
         let scale = spans as f64;
         let jet = CurveJet { p: sum(b).to_point(), d: scale * sum(d), dd: scale * scale * sum(dd) };
-        if u == clamped { jet } else { CurveJet { p: jet.p + (u - clamped) * jet.d, d: jet.d, dd: Vec2::ZERO } }
+        if u == clamped {
+            jet
+        } else {
+            CurveJet { p: jet.p + (u - clamped) * jet.d, d: jet.d, dd: Vec2::ZERO }
+        }
     }
 }
 
@@ -102,7 +113,9 @@ impl Profile {
     /// Applies a function to every coefficient of this and the same one of another profile.
     #[must_use]
     pub fn zip(&self, other: &Profile, f: impl Fn(f64, f64) -> f64) -> Self {
-        Profile { coefficients: self.coefficients.iter().zip(&other.coefficients).map(|(&a, &b)| f(a, b)).collect() }
+        Profile {
+            coefficients: self.coefficients.iter().zip(&other.coefficients).map(|(&a, &b)| f(a, b)).collect(),
+        }
     }
 
     /// The profile multiplied by a number.

@@ -2,13 +2,13 @@
 //!
 //! Departure: the paper computes an approximate Voronoi diagram on a grid and measures it
 //! along the normals of the streamline. Here the measure is computed directly, in closed
-//! form. A point at distance t along the normal n from a station p is as near to its own line
-//! as to a sample q of another (with a gap g between) while
+//! form. The bisector of a station p and a sample q of another line, moved towards p by half
+//! the gap g, is met by the normal n of p at
 //!
-//! `|p + t n - q| >= t + g`, that is `t <= (|q - p|² - g²) / (2 (g + n·(q - p)))`,
+//! `t = |w| (|w| - g) / (2 n·w)`, with `w = q - p`,
 //!
-//! so a rib is the least of these over the samples near by. If it holds for the points of two
-//! elements, they are at least g apart: the triangle inequality added to itself. No polygon
+//! so a rib is the least of these over the samples near by that are ahead of it. Points of
+//! two elements that respect it lie on either side of a strip as wide as the gap. No polygon
 //! is built, and the cost is linear in stations times neighbours.
 
 use super::prepare::Field;
@@ -22,6 +22,10 @@ use kurbo::{Point, Vec2};
 /// Ribs are this many spacings long at most: more would make an element wider than any line
 /// spacing asks for.
 const LONGEST_RIB: f64 = 1.1;
+
+/// Ends keep this many gaps from what is ahead of them. At one gap exactly, the room beside
+/// an end would shrink to nothing on the inner side of the slightest bend.
+pub(super) const END_GAP: f64 = 1.4;
 
 /// A streamline with the room around it.
 #[derive(Clone, Debug)]
@@ -62,7 +66,10 @@ fn spine(points: &[Point], spacing: f64) -> (Curve, [Profile; 2], [Vec<f64>; 2])
     // What the smooth bounds are in each bin, which is what widths have to reckon with.
     for (bins, bound) in bins.iter_mut().zip(&bounds) {
         for (i, k) in bins.iter_mut().enumerate() {
-            *k = [0.0, 0.5, 1.0].map(|f| bound.jet((i as f64 + f) / BINS as f64).0).into_iter().fold(0.0, f64::max);
+            *k = [0.0, 0.5, 1.0]
+                .map(|f| bound.jet((i as f64 + f) / BINS as f64).0)
+                .into_iter()
+                .fold(0.0, f64::max);
         }
     }
     (curve, bounds, bins)
@@ -77,11 +84,17 @@ struct Station {
 }
 
 fn stations(curve: &Curve) -> Vec<Station> {
-    (0..=BINS).map(|i| {
-        let jet = curve.jet(i as f64 / BINS as f64);
-        let speed = jet.d.hypot().max(f64::MIN_POSITIVE);
-        Station { p: jet.p, normal: left_of(jet.d / speed), curvature: jet.d.cross(jet.dd) / (speed * speed * speed) }
-    }).collect()
+    (0..=BINS)
+        .map(|i| {
+            let jet = curve.jet(i as f64 / BINS as f64);
+            let speed = jet.d.hypot().max(f64::MIN_POSITIVE);
+            Station {
+                p: jet.p,
+                normal: left_of(jet.d / speed),
+                curvature: jet.d.cross(jet.dd) / (speed * speed * speed),
+            }
+        })
+        .collect()
 }
 
 /// Room around every line of one container.
@@ -91,28 +104,47 @@ pub(super) fn blobs(index: usize, field: &Field, flow: &DirectionField, lines: V
     for (owner, line) in lines.iter().enumerate() {
         line.points.iter().for_each(|&p| grid.insert(p, owner as u32));
     }
-    let extended: Vec<(Vec<Point>, LineKind)> = lines.into_iter().enumerate().map(|(owner, line)| {
-        let points = match line.kind {
-            LineKind::Free => extend(line.points, owner as u32, field, flow, &grid),
-            LineKind::Boundary | LineKind::Fixed => line.points,
-        };
-        (points, line.kind)
-    }).collect();
+    let extended: Vec<(Vec<Point>, LineKind)> = lines
+        .into_iter()
+        .enumerate()
+        .map(|(owner, line)| {
+            let points = match line.kind {
+                LineKind::Free => extend(line.points, owner as u32, field, flow, &grid),
+                LineKind::Boundary | LineKind::Fixed => line.points,
+            };
+            (points, line.kind)
+        })
+        .collect();
     let samples = Samples::new(field, &extended);
-    extended.iter().enumerate().map(|(owner, (points, kind))| {
-        let length = polyline::length(points);
-        let (curve, ..) = spine(points, spacing);
-        let ribs: Vec<[f64; 2]> = stations(&curve).iter().enumerate().map(|(i, station)| {
-            let along = i as f64 / BINS as f64 * length;
-            samples.ribs(station, along, owner as u32, *kind, field)
-        }).collect();
-        let room = [0, 1].map(|side| ribs.windows(2).map(|pair| pair[0][side].min(pair[1][side])).collect());
-        Blob { field: index, kind: *kind, points: points.clone(), length, room }
-    }).collect()
+    extended
+        .iter()
+        .enumerate()
+        .map(|(owner, (points, kind))| {
+            let length = polyline::length(points);
+            let (curve, ..) = spine(points, spacing);
+            let ribs: Vec<[f64; 2]> = stations(&curve)
+                .iter()
+                .enumerate()
+                .map(|(i, station)| {
+                    let along = i as f64 / BINS as f64 * length;
+                    samples.ribs(station, along, owner as u32, *kind, field)
+                })
+                .collect();
+            let room =
+                [0, 1].map(|side| ribs.windows(2).map(|pair| pair[0][side].min(pair[1][side])).collect());
+            Blob { field: index, kind: *kind, points: points.clone(), length, room }
+        })
+        .collect()
 }
 
 /// Follows the field beyond both ends, until another line is as near as the own end (F-042).
-fn extend(mut points: Vec<Point>, owner: u32, field: &Field, flow: &DirectionField, grid: &PointGrid) -> Vec<Point> {
+fn extend(
+    mut points: Vec<Point>,
+    owner: u32,
+    field: &Field,
+    flow: &DirectionField,
+    grid: &PointGrid,
+) -> Vec<Point> {
     let (spacing, gap) = (field.sizes.spacing, field.sizes.gap);
     let step = spacing / 16.0;
     for _ in 0..2 {
@@ -121,10 +153,11 @@ fn extend(mut points: Vec<Point>, owner: u32, field: &Field, flow: &DirectionFie
         let mut direction = (points[n - 1] - points[n - 2]).normalize();
         let (mut at, mut walked) = (points[n - 1], 0.0);
         while walked < 1.2 * spacing {
-            direction = flow.direction(at, direction).filter(|next| next.dot(direction) > 0.98).unwrap_or(direction);
+            direction =
+                flow.direction(at, direction).filter(|next| next.dot(direction) > 0.98).unwrap_or(direction);
             let next = at + step * direction;
             walked += step;
-            let reach = walked + gap;
+            let reach = walked + END_GAP * gap;
             if !field.region.contains(next) || grid.any_within(next, reach, |_, other| other != owner) {
                 break;
             }
@@ -171,11 +204,11 @@ impl Samples {
             }
             let gap = field.sizes.gap + other_bonus - own_bonus;
             let w = q - station.p;
-            let room = w.hypot2() - gap * gap;
+            let distance = w.hypot();
             for (side, normal) in [station.normal, -station.normal].into_iter().enumerate() {
-                let towards = gap + normal.dot(w);
+                let towards = normal.dot(w);
                 if towards > 0.0 {
-                    ribs[side] = ribs[side].min((room / (2.0 * towards)).max(0.0));
+                    ribs[side] = ribs[side].min((distance * (distance - gap) / (2.0 * towards)).max(0.0));
                 }
             }
             true

@@ -22,7 +22,12 @@ mod tests {
         let templates = templates().unwrap();
         assert!(templates.len() >= 12);
         for (family, _) in FAMILIES.iter().skip(2) {
-            let of = |full: bool| templates.iter().filter(|t| t.names.iter().any(|n| n == family) && (t.side == Side::Full) == full).count();
+            let of = |full: bool| {
+                templates
+                    .iter()
+                    .filter(|t| t.names.iter().any(|n| n == family) && (t.side == Side::Full) == full)
+                    .count()
+            };
             assert!(of(true) >= 2 && of(false) >= 1, "{family}: {} full, {} half", of(true), of(false));
         }
     }

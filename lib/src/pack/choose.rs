@@ -79,7 +79,14 @@ pub(super) fn poses(templates: &[Template], usable: &[usize], blob: &Blob) -> Ve
 
 /// The widest smooth fit of a pose into a part of a blob. `None` if it would be a thread.
 /// `curvature` is that of the part, by bins.
-pub(super) fn fit(template: &Template, pose: Pose, blob: &Blob, (from, to): (f64, f64), curvature: Option<&[Vec<f64>; 2]>, params: &Params) -> Option<Fit> {
+pub(super) fn fit(
+    template: &Template,
+    pose: Pose,
+    blob: &Blob,
+    (from, to): (f64, f64),
+    curvature: Option<&[Vec<f64>; 2]>,
+    params: &Params,
+) -> Option<Fit> {
     let along_scale = (to - from) * blob.length / template.length;
     // Extents below this share of the widest do not limit the width: a tip has no width.
     const TIP: f64 = 0.03;
@@ -126,7 +133,14 @@ pub(super) fn fit(template: &Template, pose: Pose, blob: &Blob, (from, to): (f64
             scale += s * extent;
         }
     }
-    Some(Fit { pose, from, to, width, area, distortion: libm::log(scale / weight.max(f64::MIN_POSITIVE) / along_scale) })
+    Some(Fit {
+        pose,
+        from,
+        to,
+        width,
+        area,
+        distortion: libm::log(scale / weight.max(f64::MIN_POSITIVE) / along_scale),
+    })
 }
 
 fn blob_bin(i: usize, from: f64, to: f64) -> usize {

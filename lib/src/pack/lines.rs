@@ -1,9 +1,10 @@
 //! Streamlines of one container (FLOWPAK 4.3): along its boundary, from its guides, and
 //! evenly in between.
 
+use super::blob::END_GAP;
 use super::prepare::Field;
-use crate::field::{BOUNDARY_BONUS, DirectionField, LineKind, Streamline, StreamlineParams, Tracer};
 use crate::field::streamline::runs;
+use crate::field::{BOUNDARY_BONUS, DirectionField, LineKind, Streamline, StreamlineParams, Tracer};
 use crate::geom::boolean::{self, Contour};
 use crate::geom::polyline::{self, left_of};
 use crate::rng::Rng;
@@ -14,9 +15,20 @@ pub(super) const MOST_STEPS: usize = 20_000_000;
 
 /// Traces a container. `half_elements`: something can lie along the boundary. The flag is
 /// false if the time ran out first.
-pub(super) fn trace(field: &Field, flow: &DirectionField, half_elements: bool, rng: &mut Rng, go_on: impl FnMut(f64) -> bool) -> (Vec<Streamline>, bool) {
+pub(super) fn trace(
+    field: &Field,
+    flow: &DirectionField,
+    half_elements: bool,
+    rng: &mut Rng,
+    go_on: impl FnMut(f64) -> bool,
+) -> (Vec<Streamline>, bool) {
     let sizes = &field.sizes;
-    let params = StreamlineParams { spacing: sizes.spacing, min_length: sizes.min_length, max_length: sizes.max_length, end_gap: sizes.gap };
+    let params = StreamlineParams {
+        spacing: sizes.spacing,
+        min_length: sizes.min_length,
+        max_length: sizes.max_length,
+        end_gap: END_GAP * sizes.gap,
+    };
     let mut tracer = Tracer::new(&field.region, flow, &params, rng.fork(), MOST_STEPS);
     for spine in &field.fixed_spines {
         tracer.add(spine, LineKind::Fixed);
@@ -42,7 +54,13 @@ pub(super) fn trace(field: &Field, flow: &DirectionField, half_elements: bool, r
 /// Departure from 4.3: the paper starts lines on the boundary and lets them follow the field,
 /// where they drift off it (erratum Q-8). Lines on the boundary are taken from it exactly, and
 /// lines that carry full elements start where such an element's middle can be.
-fn boundary(field: &Field, flow: &DirectionField, contour: &Contour, half_elements: bool, tracer: &mut Tracer) {
+fn boundary(
+    field: &Field,
+    flow: &DirectionField,
+    contour: &Contour,
+    half_elements: bool,
+    tracer: &mut Tracer,
+) {
     let spacing = field.sizes.spacing;
     let step = spacing / 8.0;
     let closed: Vec<Point> = contour.iter().chain(contour.first()).copied().collect();
@@ -51,22 +69,25 @@ fn boundary(field: &Field, flow: &DirectionField, contour: &Contour, half_elemen
     points.pop();
     // The region on the left.
     let tangents = polyline::tangents(&points, true);
-    let inside = points.iter().zip(&tangents).filter(|&(&p, &t)| field.region.contains(p + step * left_of(t))).count();
+    let inside =
+        points.iter().zip(&tangents).filter(|&(&p, &t)| field.region.contains(p + step * left_of(t))).count();
     if 2 * inside < points.len() {
         points.reverse();
     }
     let tangents = polyline::tangents(&points, true);
     let reach = (2.0 + BOUNDARY_BONUS) * spacing;
-    let usable: Vec<bool> = (0..n).map(|i| {
-        let (p, tangent) = (points[i], tangents[i]);
-        let inward = left_of(tangent);
-        let room = field.region.ray(p + 1e-3 * step * inward, inward, reach);
-        let thick = room >= (1.5 + BOUNDARY_BONUS) * spacing;
-        if !(half_elements && thick) {
-            tracer.seed(p + (room / 2.0).min(spacing / 2.0) * inward, 0.0);
-        }
-        half_elements && thick && is_aligned(flow, p, tangent) && !is_corner(&points, i)
-    }).collect();
+    let usable: Vec<bool> = (0..n)
+        .map(|i| {
+            let (p, tangent) = (points[i], tangents[i]);
+            let inward = left_of(tangent);
+            let room = field.region.ray(p + 1e-3 * step * inward, inward, reach);
+            let thick = room >= (1.5 + BOUNDARY_BONUS) * spacing;
+            if !(half_elements && thick) {
+                tracer.seed(p + (room / 2.0).min(spacing / 2.0) * inward, 0.0);
+            }
+            half_elements && thick && is_aligned(flow, p, tangent) && !is_corner(&points, i)
+        })
+        .collect();
     // Start at a gap, so that a run over the first point is not cut there.
     let start = usable.iter().position(|&usable| !usable).unwrap_or(0);
     let rotated: Vec<bool> = (0..n).map(|i| usable[(start + i) % n]).collect();

@@ -44,7 +44,12 @@ pub const MOST_ELEMENTS: f64 = 50_000.0;
 ///
 /// Errors: nothing to fill or to fill it with; a container, guide or element that cannot be
 /// used; more than [`MOST_ELEMENTS`].
-pub fn generate(params: &Params, scene: &Scene, rng: &mut Rng, progress: &mut dyn Progress) -> Result<Artwork, Error> {
+pub fn generate(
+    params: &Params,
+    scene: &Scene,
+    rng: &mut Rng,
+    progress: &mut dyn Progress,
+) -> Result<Artwork, Error> {
     progress.step("prepare", 0.0);
     let prepared = prepare::prepare(params, scene)?;
     check_work(&prepared)?;
@@ -59,14 +64,20 @@ pub fn generate(params: &Params, scene: &Scene, rng: &mut Rng, progress: &mut dy
         let Some(flow) = DirectionField::new(&field.region, &field.guides, cell) else { continue };
         let half_elements = usable.iter().any(|&t| templates[t].side != Side::Full);
         progress.step("streamlines", 0.0);
-        let (lines, finished) = lines::trace(field, &flow, half_elements, rng, |done| progress.step("streamlines", done));
+        let (lines, finished) =
+            lines::trace(field, &flow, half_elements, rng, |done| progress.step("streamlines", done));
         complete &= finished;
         progress.step("blobs", 0.0);
         blobs.extend(blob::blobs(index, field, &flow, lines));
     }
-    let placement = place_all(&prepared, &templates, &blobs, scene, &mut rng.fork(), progress, &mut complete)?;
+    let placement =
+        place_all(&prepared, &templates, &blobs, scene, &mut rng.fork(), progress, &mut complete)?;
     if placement.placed.is_empty() && complete {
-        return Err(Error::new("nothing-fits", "No element fits into the shape", "Make the element width or the shortest length smaller"));
+        return Err(Error::new(
+            "nothing-fits",
+            "No element fits into the shape",
+            "Make the element width or the shortest length smaller",
+        ));
     }
     progress.step("artwork", 0.0);
     Ok(artwork(&prepared, &templates, &blobs, placement.placed, scene, complete))
@@ -80,7 +91,14 @@ fn check_work(prepared: &Prepared) -> Result<(), Error> {
         let count = prepared.area / each;
         if count > MOST_ELEMENTS {
             let spacing = sizes.spacing * (count / MOST_ELEMENTS).sqrt();
-            return Err(Error::new("too-many-elements", format!("An element width of {:.4} would need about {count:.0} elements, more than {MOST_ELEMENTS:.0}", sizes.spacing), format!("Set the element width (--spacing) to {:.4} or more", spacing * 1.05)));
+            return Err(Error::new(
+                "too-many-elements",
+                format!(
+                    "An element width of {:.4} would need about {count:.0} elements, more than {MOST_ELEMENTS:.0}",
+                    sizes.spacing
+                ),
+                format!("Set the element width (--spacing) to {:.4} or more", spacing * 1.05),
+            ));
         }
     }
     Ok(())
@@ -88,7 +106,8 @@ fn check_work(prepared: &Prepared) -> Result<(), Error> {
 
 /// The drawn elements and the built-in ones.
 fn templates(scene: &Scene) -> Result<Vec<Template>, Error> {
-    let mut templates = scene.elements.iter().map(|element| Template::new(element, false)).collect::<Result<Vec<_>, _>>()?;
+    let mut templates =
+        scene.elements.iter().map(|element| Template::new(element, false)).collect::<Result<Vec<_>, _>>()?;
     templates.extend(builtin::templates()?);
     Ok(templates)
 }
@@ -107,9 +126,15 @@ fn usable(templates: &[Template], field: &Field, scene: &Scene) -> Result<Vec<us
     if usable.is_empty() {
         let container = &scene.containers[field.container].source;
         let (sentence, remedy) = if wanted == "drawn" {
-            ("No element is drawn".to_owned(), "Draw one: group its shapes with a straight spine and mark the group as element")
+            (
+                "No element is drawn".to_owned(),
+                "Draw one: group its shapes with a straight spine and mark the group as element",
+            )
         } else {
-            (format!("No element, kind or family is called '{wanted}'"), "Use auto, drawn, mixed, leaves, drops, spirals, scales, feathers, or the id of an element")
+            (
+                format!("No element, kind or family is called '{wanted}'"),
+                "Use auto, drawn, mixed, leaves, drops, spirals, scales, feathers, or the id of an element",
+            )
         };
         return Err(container.error("no-element", sentence, remedy));
     }
@@ -117,7 +142,15 @@ fn usable(templates: &[Template], field: &Field, scene: &Scene) -> Result<Vec<us
 }
 
 /// Step 5 for all containers, in drawing order.
-fn place_all(prepared: &Prepared, templates: &[Template], blobs: &[Blob], scene: &Scene, rng: &mut Rng, progress: &mut dyn Progress, complete: &mut bool) -> Result<Placement, Error> {
+fn place_all(
+    prepared: &Prepared,
+    templates: &[Template],
+    blobs: &[Blob],
+    scene: &Scene,
+    rng: &mut Rng,
+    progress: &mut dyn Progress,
+    complete: &mut bool,
+) -> Result<Placement, Error> {
     let spacing = prepared.fields.iter().map(|field| field.sizes.spacing).fold(f64::INFINITY, f64::min);
     let mut placement = Placement::new(prepared.bounds, spacing / 2.0);
     let mut neighbours = Neighbours::new(prepared, spacing);
@@ -141,17 +174,28 @@ fn place_all(prepared: &Prepared, templates: &[Template], blobs: &[Blob], scene:
 }
 
 /// Candidates for a blob, best first; a few are enough, since the first nearly always goes.
-fn ranked(templates: &[Template], usable: &[usize], blob: &Blob, field: &Field, neighbours: &Neighbours, rng: &mut Rng) -> Vec<Fit> {
+fn ranked(
+    templates: &[Template],
+    usable: &[usize],
+    blob: &Blob,
+    field: &Field,
+    neighbours: &Neighbours,
+    rng: &mut Rng,
+) -> Vec<Fit> {
     const TRIED: usize = 3;
     let bin = blob.length / template::BINS as f64;
     let room: f64 = blob.room.iter().flatten().sum::<f64>() * bin;
     let reversed = field.guided && field.params.sense == "arrow" && runs_against(blob, &field.guides);
     let mut scored: Vec<(f64, Fit)> = Vec::new();
     for pose in choose::poses(templates, usable, blob) {
-        let Some(fit) = choose::fit(&templates[pose.template], pose, blob, (0.0, 1.0), None, &field.params) else { continue };
+        let Some(fit) = choose::fit(&templates[pose.template], pose, blob, (0.0, 1.0), None, &field.params)
+        else {
+            continue;
+        };
         let against = field.guided && field.params.sense == "arrow" && pose.along != reversed;
         let repeats = neighbours.repeats(blob, pose.template);
-        let score = place::score(&fit, room, repeats, against, &field.params) + rng.between(0.0, 0.06 * field.params.variety);
+        let score = place::score(&fit, room, repeats, against, &field.params)
+            + rng.between(0.0, 0.06 * field.params.variety);
         scored.push((score, fit));
     }
     scored.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -178,7 +222,10 @@ struct Neighbours {
 
 impl Neighbours {
     fn new(prepared: &Prepared, spacing: f64) -> Self {
-        Neighbours { grid: crate::geom::near::PointGrid::new(prepared.bounds, 2.0 * spacing), reach: 1.6 * spacing }
+        Neighbours {
+            grid: crate::geom::near::PointGrid::new(prepared.bounds, 2.0 * spacing),
+            reach: 1.6 * spacing,
+        }
     }
 
     fn add(&mut self, blob: &Blob, template: usize) {
@@ -187,7 +234,9 @@ impl Neighbours {
 
     /// 1 for an equal element beside most of a blob, 0 for none.
     fn repeats(&self, blob: &Blob, template: usize) -> f64 {
-        let beside = Self::marks(blob).filter(|&p| self.grid.any_within(p, self.reach, |_, other| other == template as u32)).count();
+        let beside = Self::marks(blob)
+            .filter(|&p| self.grid.any_within(p, self.reach, |_, other| other == template as u32))
+            .count();
         beside as f64 / Self::marks(blob).count() as f64
     }
 
@@ -198,7 +247,14 @@ impl Neighbours {
     }
 }
 
-fn artwork(prepared: &Prepared, templates: &[Template], blobs: &[Blob], placed: Vec<Placed>, scene: &Scene, complete: bool) -> Artwork {
+fn artwork(
+    prepared: &Prepared,
+    templates: &[Template],
+    blobs: &[Blob],
+    placed: Vec<Placed>,
+    scene: &Scene,
+    complete: bool,
+) -> Artwork {
     let decimals = rinceau_format::decimals_for(prepared.input_size);
     let spacing = prepared.fields.iter().map(|field| field.sizes.spacing).fold(0.0, f64::max);
     let tones = paint::assign(&placed, 2.6 * spacing);
@@ -208,9 +264,14 @@ fn artwork(prepared: &Prepared, templates: &[Template], blobs: &[Blob], placed: 
     for (placed, tone) in placed.iter().zip(tones) {
         let template = &templates[placed.fit.pose.template];
         let field = &prepared.fields[blobs[placed.blob].field];
-        let palette = paint::palette(&field.params.palette, scene.containers[field.container].fill.as_deref());
+        let palette =
+            paint::palette(&field.params.palette, scene.containers[field.container].fill.as_deref());
         let parts = template.parts.iter().zip(&placed.paths).map(|((_, style), path)| {
-            let style = if template.builtin { painted(style, palette[tone]) } else { style.scaled(placed.scale, decimals) };
+            let style = if template.builtin {
+                painted(style, palette[tone])
+            } else {
+                style.scaled(placed.scale, decimals)
+            };
             Part { path: path.clone(), transform: Affine::IDENTITY, style }
         });
         elements.items.push(Item { of: template.id.clone(), parts: parts.collect() });
@@ -220,11 +281,18 @@ fn artwork(prepared: &Prepared, templates: &[Template], blobs: &[Blob], placed: 
     let ink: f64 = placed.iter().map(|placed| placed.area).sum();
     counts.insert("elements".into(), placed.len() as f64);
     counts.insert("streamlines".into(), blobs.len() as f64);
-    counts.insert("streamlines.boundary".into(), blobs.iter().filter(|blob| blob.kind == LineKind::Boundary).count() as f64);
+    counts.insert(
+        "streamlines.boundary".into(),
+        blobs.iter().filter(|blob| blob.kind == LineKind::Boundary).count() as f64,
+    );
     counts.insert("coverage".into(), if prepared.area > 0.0 { ink / prepared.area } else { 0.0 });
     let fixed = Group {
         name: "fixed".into(),
-        items: scene.fixed.iter().map(|fixed| Item { of: fixed.source.id.clone(), parts: fixed.parts.clone() }).collect(),
+        items: scene
+            .fixed
+            .iter()
+            .map(|fixed| Item { of: fixed.source.id.clone(), parts: fixed.parts.clone() })
+            .collect(),
         ..Group::default()
     };
     let mut groups = vec![elements, fixed, spines];

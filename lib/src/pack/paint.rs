@@ -29,7 +29,8 @@ pub(super) fn palette(name: &str, container_fill: Option<&str>) -> [&'static str
 /// Perceived brightness of a colour, 0 black to 1 white. `None` for gradients and patterns.
 fn luminance(colour: &str) -> Option<f64> {
     let hex = colour.trim().strip_prefix('#');
-    let channel = |range: std::ops::Range<usize>| hex.and_then(|hex| u8::from_str_radix(hex.get(range)?, 16).ok());
+    let channel =
+        |range: std::ops::Range<usize>| hex.and_then(|hex| u8::from_str_radix(hex.get(range)?, 16).ok());
     let (r, g, b) = match (hex.map(str::len), colour.trim()) {
         (Some(6), _) => (channel(0..2)?, channel(2..4)?, channel(4..6)?),
         (Some(3), _) => (channel(0..1)? * 17, channel(1..2)? * 17, channel(2..3)? * 17),
@@ -44,7 +45,9 @@ fn luminance(colour: &str) -> Option<f64> {
 pub(super) fn assign(placed: &[Placed], reach: f64) -> Vec<usize> {
     const SHARES: [f64; 3] = [0.46, 0.34, 0.2];
     let centres: Vec<Point> = placed.iter().map(|placed| placed.centre).collect();
-    let bounds = centres.iter().fold(None, |bounds: Option<kurbo::Rect>, &p| Some(bounds.map_or(kurbo::Rect::from_points(p, p), |b| b.union_pt(p))));
+    let bounds = centres.iter().fold(None, |bounds: Option<kurbo::Rect>, &p| {
+        Some(bounds.map_or(kurbo::Rect::from_points(p, p), |b| b.union_pt(p)))
+    });
     let Some(bounds) = bounds else { return Vec::new() };
     let mut grid = crate::geom::near::PointGrid::new(bounds, reach);
     let mut assigned: Vec<usize> = Vec::new();
@@ -58,7 +61,9 @@ pub(super) fn assign(placed: &[Placed], reach: f64) -> Vec<usize> {
             }
             true
         });
-        let want = |tone: usize| near[tone] / SHARES[tone] + 3.0 * (counts[tone] / (i as f64 + 1.0) - SHARES[tone]) / SHARES[tone];
+        let want = |tone: usize| {
+            near[tone] / SHARES[tone] + 3.0 * (counts[tone] / (i as f64 + 1.0) - SHARES[tone]) / SHARES[tone]
+        };
         let best = (0..3).min_by(|&a, &b| want(a).total_cmp(&want(b))).unwrap_or(0);
         counts[best] += 1.0;
         assigned.push(best);

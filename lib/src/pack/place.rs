@@ -49,13 +49,22 @@ impl Placement {
     }
 
     /// Places an element as wide as it goes. False if it does not go at all.
-    pub fn place(&mut self, index: usize, blob: &Blob, first: &Fit, template: &Template, field: &Field) -> bool {
+    pub fn place(
+        &mut self,
+        index: usize,
+        blob: &Blob,
+        first: &Fit,
+        template: &Template,
+        field: &Field,
+    ) -> bool {
         let spacing = field.sizes.spacing;
         for cut in SHORTER {
             let length = first.to - first.from;
             let part = (first.from + cut * length, first.to - cut * length);
             let (spine, bounds, curvature) = blob.spine(part.0, part.1, spacing);
-            let Some(fit) = fit(template, first.pose, blob, part, Some(&curvature), &field.params) else { continue };
+            let Some(fit) = fit(template, first.pose, blob, part, Some(&curvature), &field.params) else {
+                continue;
+            };
             for factor in NARROWER {
                 let width = [fit.width[0].scaled(factor), fit.width[1].scaled(factor)];
                 let bend = Bend {
@@ -69,7 +78,19 @@ impl Placement {
                 let stroke = template.stroke * scale;
                 if self.keeps_apart(&outlines, stroke, field) && !folded(&outlines, template) {
                     let spine = (0..=24).map(|i| spine.jet(f64::from(i) / 24.0).p).collect();
-                    self.accept(Placed { blob: index, fit: Fit { width, ..fit }, paths, scale, centre: centre(&outlines), area: 0.0, spine }, &outlines, stroke);
+                    self.accept(
+                        Placed {
+                            blob: index,
+                            fit: Fit { width, ..fit },
+                            paths,
+                            scale,
+                            centre: centre(&outlines),
+                            area: 0.0,
+                            spine,
+                        },
+                        &outlines,
+                        stroke,
+                    );
                     return true;
                 }
             }
@@ -121,7 +142,12 @@ impl Placement {
 }
 
 /// The template's paths bent into place, and their outlines.
-fn bent(template: &Template, fit: &Fit, bend: &Bend, sizes: &super::params::Sizes) -> (Vec<BezPath>, Vec<Contour>) {
+fn bent(
+    template: &Template,
+    fit: &Fit,
+    bend: &Bend,
+    sizes: &super::params::Sizes,
+) -> (Vec<BezPath>, Vec<Contour>) {
     let pose = fit.pose;
     let (u0, du) = if pose.along { (1.0, -1.0) } else { (0.0, 1.0) };
     let to_pose = Affine::new([du, 0.0, 0.0, if pose.across { -1.0 } else { 1.0 }, u0, 0.0]);
@@ -141,7 +167,13 @@ fn bent(template: &Template, fit: &Fit, bend: &Bend, sizes: &super::params::Size
 /// True if bending made an outline cross itself that did not before: the map is locally
 /// injective, so this happens only where a spine comes back to itself.
 fn folded(outlines: &[Contour], template: &Template) -> bool {
-    let was_crossed = || template.parts.iter().flat_map(|(path, _)| flatten(path, 1e-3)).any(|subpath| self_crossing(&subpath.points).is_some());
+    let was_crossed = || {
+        template
+            .parts
+            .iter()
+            .flat_map(|(path, _)| flatten(path, 1e-3))
+            .any(|subpath| self_crossing(&subpath.points).is_some())
+    };
     outlines.iter().any(|outline| self_crossing(outline).is_some()) && !was_crossed()
 }
 
@@ -166,5 +198,8 @@ pub(super) fn score(fit: &Fit, room: f64, repeats: f64, against: bool, params: &
     const DISTORTION: f64 = 0.12;
     const REPEATS: f64 = 0.3;
     const AGAINST: f64 = 0.25;
-    fit.area / room.max(f64::MIN_POSITIVE) - DISTORTION * fit.distortion.abs() - REPEATS * params.variety * repeats - if against { AGAINST } else { 0.0 }
+    fit.area / room.max(f64::MIN_POSITIVE)
+        - DISTORTION * fit.distortion.abs()
+        - REPEATS * params.variety * repeats
+        - if against { AGAINST } else { 0.0 }
 }

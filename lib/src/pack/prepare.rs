@@ -44,7 +44,11 @@ pub(super) struct Prepared {
 /// containers; a container's own parameter that does not exist.
 pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error> {
     if scene.containers.is_empty() {
-        return Err(Error::new("no-container", "There is no shape to fill", "Select a closed shape, or mark one as container (Extensions > Ornament > Mark as)"));
+        return Err(Error::new(
+            "no-container",
+            "There is no shape to fill",
+            "Select a closed shape, or mark one as container (Extensions > Ornament > Mark as)",
+        ));
     }
     let bounds = bounds_of(scene);
     let input_size = bounds.width().max(bounds.height());
@@ -62,7 +66,8 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
         }
     }
     let fixed = fixed_area(&scene.fixed, tolerance);
-    let areas: Vec<f64> = shapes.iter().map(|shape| boolean::area(&boolean::difference(shape, &fixed))).collect();
+    let areas: Vec<f64> =
+        shapes.iter().map(|shape| boolean::area(&boolean::difference(shape, &fixed))).collect();
     let area: f64 = areas.iter().sum();
     let guides: Vec<(usize, Vec<Point>)> = polylines(&scene.guides, tolerance);
     let spines: Vec<(usize, Vec<Point>)> = polylines(&scene.fixed_spines, tolerance);
@@ -77,22 +82,45 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
         let clear = boolean::offset(&fixed, (sizes.gap - sizes.edge).max(0.0));
         let free = boolean::difference(shape, &clear);
         let Some(region) = Region::new(boolean::offset(&free, -sizes.edge)) else {
-            prepared.warnings.push(format!("The container '{}' is too small or too thin for anything to fit", container.source.id));
+            prepared.warnings.push(format!(
+                "The container '{}' is too small or too thin for anything to fit",
+                container.source.id
+            ));
             continue;
         };
         let inside = |line: &Vec<Point>| passes(line, &region, sizes.spacing / 2.0);
-        let own_guides: Vec<Vec<Point>> = guides.iter().map(|(_, line)| line).filter(|line| inside(line)).cloned().collect();
+        let own_guides: Vec<Vec<Point>> =
+            guides.iter().map(|(_, line)| line).filter(|line| inside(line)).cloned().collect();
         let guided = !own_guides.is_empty();
-        let guides = if guided { own_guides } else { region.contours().iter().map(|contour| closed(contour)).collect() };
-        let fixed_spines = spines.iter().map(|(_, line)| line).filter(|line| passes(line, &region, 0.0)).cloned().collect();
-        prepared.fields.push(Field { container: index, params: own, sizes, region, guides, guided, fixed_spines });
+        let guides = if guided {
+            own_guides
+        } else {
+            region.contours().iter().map(|contour| closed(contour)).collect()
+        };
+        let fixed_spines =
+            spines.iter().map(|(_, line)| line).filter(|line| passes(line, &region, 0.0)).cloned().collect();
+        prepared.fields.push(Field {
+            container: index,
+            params: own,
+            sizes,
+            region,
+            guides,
+            guided,
+            fixed_spines,
+        });
     }
     Ok(prepared)
 }
 
 fn bounds_of(scene: &Scene) -> Rect {
-    let containers = scene.containers.iter().flat_map(|container| container.outlines.iter().map(|outline| outline.path.bounding_box()));
-    let fixed = scene.fixed.iter().flat_map(|fixed| fixed.parts.iter().map(|part| (part.transform * part.path.clone()).bounding_box()));
+    let containers = scene
+        .containers
+        .iter()
+        .flat_map(|container| container.outlines.iter().map(|outline| outline.path.bounding_box()));
+    let fixed = scene
+        .fixed
+        .iter()
+        .flat_map(|fixed| fixed.parts.iter().map(|part| (part.transform * part.path.clone()).bounding_box()));
     containers.chain(fixed).reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO)
 }
 
@@ -121,9 +149,19 @@ fn silhouette(container: &Container, tolerance: f64) -> Result<Vec<Contour>, Err
         }
         union = if union.is_empty() { simple } else { boolean::union(&union, &simple) };
     }
-    let size = container.outlines.iter().map(|outline| outline.path.bounding_box()).reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO).size();
+    let size = container
+        .outlines
+        .iter()
+        .map(|outline| outline.path.bounding_box())
+        .reduce(|a, b| a.union(b))
+        .unwrap_or(Rect::ZERO)
+        .size();
     if boolean::area(&union) <= 1e-6 * size.max_side() * size.max_side() {
-        return Err(source.error("flat-container", format!("The container '{name}' encloses no area"), "Draw it as a closed shape, or clear its mark"));
+        return Err(source.error(
+            "flat-container",
+            format!("The container '{name}' encloses no area"),
+            "Draw it as a closed shape, or clear its mark",
+        ));
     }
     Ok(union)
 }
@@ -140,7 +178,14 @@ fn check_crossing(contour: &Contour, container: &Container, tolerance: f64) -> R
     if loops <= SMALL_LOOP * winding || winding <= tolerance * tolerance {
         return Ok(());
     }
-    Err(container.source.error("crossing-container", format!("The outline of the container '{}' crosses itself at {:.1},{:.1}", container.source.id, at.x, at.y), "Clean it with Path > Union, or move the nodes apart"))
+    Err(container.source.error(
+        "crossing-container",
+        format!(
+            "The outline of the container '{}' crosses itself at {:.1},{:.1}",
+            container.source.id, at.x, at.y
+        ),
+        "Clean it with Path > Union, or move the nodes apart",
+    ))
 }
 
 /// A place where a closed contour properly crosses itself.
@@ -187,7 +232,10 @@ fn fixed_area(fixed: &[Fixed], tolerance: f64) -> Vec<Contour> {
         let subpaths = flatten(&path, tolerance);
         if part.style.is_filled() {
             let contours: Vec<Contour> = subpaths.iter().map(|subpath| subpath.points.clone()).collect();
-            area = boolean::union(&area, &boolean::simplified(&contours, part.style.fill_rule() == FillRule::EvenOdd));
+            area = boolean::union(
+                &area,
+                &boolean::simplified(&contours, part.style.fill_rule() == FillRule::EvenOdd),
+            );
         }
         // A fixed object with no paint at all still counts, as its outline.
         let unpainted = if part.style.is_filled() { 0.0 } else { 2.0 * tolerance };
@@ -218,7 +266,9 @@ fn closed(contour: &Contour) -> Vec<Point> {
 /// True if a polyline passes through a region or within `reach` of it.
 fn passes(line: &[Point], region: &Region, reach: f64) -> bool {
     line.windows(2).any(|pair| {
-        let steps = ((pair[0].distance(pair[1]) / (region.bounds().size().max_side() / 64.0)).ceil() as usize).clamp(1, 256);
+        let steps = ((pair[0].distance(pair[1]) / (region.bounds().size().max_side() / 64.0)).ceil()
+            as usize)
+            .clamp(1, 256);
         (0..=steps).any(|k| {
             let p = pair[0].lerp(pair[1], k as f64 / steps as f64);
             region.contains(p) || (reach > 0.0 && region.distance(p, reach) < reach)
@@ -226,16 +276,28 @@ fn passes(line: &[Point], region: &Region, reach: f64) -> bool {
     })
 }
 
-fn check_guides(guides: &[Guide], lines: &[(usize, Vec<Point>)], shapes: &[Vec<Contour>]) -> Result<(), Error> {
+fn check_guides(
+    guides: &[Guide],
+    lines: &[(usize, Vec<Point>)],
+    shapes: &[Vec<Contour>],
+) -> Result<(), Error> {
     let regions: Vec<Region> = shapes.iter().filter_map(|shape| Region::new(shape.clone())).collect();
     for (i, guide) in guides.iter().enumerate() {
         let mut own = lines.iter().filter(|(owner, _)| *owner == i).map(|(_, line)| line).peekable();
         if own.peek().is_none() {
-            return Err(guide.source.error("zero-guide", format!("The guide '{}' has no length", guide.source.id), "Draw it as a line along the flow, or delete it"));
+            return Err(guide.source.error(
+                "zero-guide",
+                format!("The guide '{}' has no length", guide.source.id),
+                "Draw it as a line along the flow, or delete it",
+            ));
         }
         let reach = |region: &Region| region.bounds().size().max_side() * 0.02;
         if !own.any(|line| regions.iter().any(|region| passes(line, region, reach(region)))) {
-            return Err(guide.source.error("guide-outside", format!("The guide '{}' is outside every container", guide.source.id), "Move it into the shape whose flow it should guide, or clear its mark"));
+            return Err(guide.source.error(
+                "guide-outside",
+                format!("The guide '{}' is outside every container", guide.source.id),
+                "Move it into the shape whose flow it should guide, or clear its mark",
+            ));
         }
     }
     Ok(())

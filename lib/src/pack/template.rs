@@ -49,19 +49,39 @@ impl Template {
         let along = (tip - base).normalize();
         let normal = left_of(along);
         // Rows (x, y) -> (distance along the spine, distance to its left).
-        let straight = Affine::new([along.x, normal.x, along.y, normal.y, -along.dot(base.to_vec2()), -normal.dot(base.to_vec2())]);
+        let straight = Affine::new([
+            along.x,
+            normal.x,
+            along.y,
+            normal.y,
+            -along.dot(base.to_vec2()),
+            -normal.dot(base.to_vec2()),
+        ]);
         let spine_length = base.distance(tip);
-        let parts: Vec<(BezPath, Style, f64)> = element.template.parts.iter().map(|part| {
-            let scale = part.transform.determinant().abs().sqrt();
-            (straight * part.transform * part.path.clone(), part.style.scaled(scale, 6), part.style.stroke_width().unwrap_or(0.0) * scale / 2.0)
-        }).collect();
+        let parts: Vec<(BezPath, Style, f64)> = element
+            .template
+            .parts
+            .iter()
+            .map(|part| {
+                let scale = part.transform.determinant().abs().sqrt();
+                (
+                    straight * part.transform * part.path.clone(),
+                    part.style.scaled(scale, 6),
+                    part.style.stroke_width().unwrap_or(0.0) * scale / 2.0,
+                )
+            })
+            .collect();
         let tolerance = spine_length / 1000.0;
-        let outlines: Vec<Vec<Point>> = parts.iter().flat_map(|(path, ..)| flatten(path, tolerance)).map(|mut subpath| {
-            if subpath.has_close {
-                subpath.points.extend(subpath.points.first().copied());
-            }
-            subpath.points
-        }).collect();
+        let outlines: Vec<Vec<Point>> = parts
+            .iter()
+            .flat_map(|(path, ..)| flatten(path, tolerance))
+            .map(|mut subpath| {
+                if subpath.has_close {
+                    subpath.points.extend(subpath.points.first().copied());
+                }
+                subpath.points
+            })
+            .collect();
         let points = outlines.iter().flatten();
         let (x0, x1) = points.fold((0.0f64, spine_length), |(x0, x1), p| (x0.min(p.x), x1.max(p.x)));
         let to_uv = Affine::new([1.0 / (x1 - x0), 0.0, 0.0, 1.0, -x0 / (x1 - x0), 0.0]);
@@ -70,12 +90,28 @@ impl Template {
         let extents = extents(&outlines, to_uv, stroke);
         let widest = [max(&extents[0]), max(&extents[1])];
         if widest[0].max(widest[1]) <= 1e-6 * spine_length {
-            return Err(source.error("flat-element", format!("The element '{}' has no width beside its spine", source.id), "Draw its shapes around or beside the spine"));
+            return Err(source.error(
+                "flat-element",
+                format!("The element '{}' has no width beside its spine", source.id),
+                "Draw its shapes around or beside the spine",
+            ));
         }
         // A half element may cross its spine by this share of its width: pen wobble.
         const HALF: f64 = 0.06;
-        let side = if widest[1] <= HALF * widest[0] { Side::Left } else if widest[0] <= HALF * widest[1] { Side::Right } else { Side::Full };
-        let names = element.sets.iter().chain([&element.kind, &element.symbol, &source.id]).filter(|name| !name.is_empty()).cloned().collect();
+        let side = if widest[1] <= HALF * widest[0] {
+            Side::Left
+        } else if widest[0] <= HALF * widest[1] {
+            Side::Right
+        } else {
+            Side::Full
+        };
+        let names = element
+            .sets
+            .iter()
+            .chain([&element.kind, &element.symbol, &source.id])
+            .filter(|name| !name.is_empty())
+            .cloned()
+            .collect();
         Ok(Template {
             id: source.id.clone(),
             builtin,
@@ -108,7 +144,13 @@ fn extents(outlines: &[Vec<Point>], to_uv: Affine, stroke: f64) -> [Vec<f64>; 2]
             let (a, b) = if a.x <= b.x { (a, b) } else { (b, a) };
             let bin = |u: f64| ((u * BINS as f64).max(0.0) as usize).min(BINS - 1);
             for i in bin(a.x)..=bin(b.x) {
-                let at = |u: f64| if b.x > a.x { a.y + (b.y - a.y) * ((u - a.x) / (b.x - a.x)).clamp(0.0, 1.0) } else { a.y };
+                let at = |u: f64| {
+                    if b.x > a.x {
+                        a.y + (b.y - a.y) * ((u - a.x) / (b.x - a.x)).clamp(0.0, 1.0)
+                    } else {
+                        a.y
+                    }
+                };
                 let ends = [at(i as f64 / BINS as f64), at((i + 1) as f64 / BINS as f64)];
                 let ends = if b.x > a.x { ends } else { [a.y, b.y] };
                 for v in ends {
@@ -127,7 +169,9 @@ mod tests {
     use rinceau_format::{Document, Selection};
 
     fn template(body: &str) -> Result<Template, Error> {
-        let svg = format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 200 200'><g class='rinceau-element' id='e'>{body}</g></svg>");
+        let svg = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 200 200'><g class='rinceau-element' id='e'>{body}</g></svg>"
+        );
         let scene = Document::from_bytes(svg.into_bytes()).unwrap().scene(&Selection::default()).unwrap();
         Template::new(&scene.elements[0], false)
     }
@@ -135,7 +179,9 @@ mod tests {
     #[test]
     fn extents_follow_the_outline() {
         // A rhombus of half width 10 on a spine of length 100 that points down.
-        let t = template("<path d='M50,50 60,100 50,150 40,100Z'/><path class='rinceau-spine' d='M50,50V150'/>").unwrap();
+        let t =
+            template("<path d='M50,50 60,100 50,150 40,100Z'/><path class='rinceau-spine' d='M50,50V150'/>")
+                .unwrap();
         assert_eq!(t.side, Side::Full);
         for side in &t.extents {
             assert!((side[49] - 10.0).abs() < 1e-6 && (side[0] - 0.2).abs() < 1e-6, "{side:?}");
@@ -145,9 +191,20 @@ mod tests {
 
     #[test]
     fn half_elements_and_missing_spines_are_known() {
-        assert_eq!(template("<path d='M0,0 100,0 50,20Z'/><path class='rinceau-spine' d='M0,0H100'/>").unwrap().side, Side::Left);
-        assert_eq!(template("<path d='M0,0 100,0 50,-20Z'/><path class='rinceau-spine' d='M0,0H100'/>").unwrap().side, Side::Right);
+        assert_eq!(
+            template("<path d='M0,0 100,0 50,20Z'/><path class='rinceau-spine' d='M0,0H100'/>").unwrap().side,
+            Side::Left
+        );
+        assert_eq!(
+            template("<path d='M0,0 100,0 50,-20Z'/><path class='rinceau-spine' d='M0,0H100'/>")
+                .unwrap()
+                .side,
+            Side::Right
+        );
         assert_eq!(template("<path d='M0,0 100,0 50,20Z'/>").unwrap_err().code(), "no-spine");
-        assert_eq!(template("<path d='M0,0 100,0Z'/><path class='rinceau-spine' d='M0,0H100'/>").unwrap_err().code(), "flat-element");
+        assert_eq!(
+            template("<path d='M0,0 100,0Z'/><path class='rinceau-spine' d='M0,0H100'/>").unwrap_err().code(),
+            "flat-element"
+        );
     }
 }
