@@ -79,8 +79,13 @@ impl Document {
     }
 
     fn xml_error(&self, error: &roxmltree::Error) -> Error {
-        let at = error.pos();
-        let (line, column) = (at.row as usize, at.col as usize);
+        let at = match error {
+            // The parser does not say where the text ends.
+            roxmltree::Error::UnexpectedEndOfStream | roxmltree::Error::UnclosedRootNode => {
+                Position::of(&self.text, self.text.len())
+            }
+            _ => Position { line: error.pos().row as usize, column: error.pos().col as usize },
+        };
         let full = error.to_string();
         let reason = full.rsplit_once(" at ").map_or(full.as_str(), |(reason, _)| reason);
         let (code, sentence) = if !self.text.trim_start().starts_with('<') {
@@ -88,7 +93,6 @@ impl Document {
         } else {
             ("broken-xml", format!("The drawing is damaged or cut short: {reason}"))
         };
-        Error::new(code, sentence, "Open it in Inkscape and save it again as SVG")
-            .at(Position { line, column })
+        Error::new(code, sentence, "Open it in Inkscape and save it again as SVG").at(at)
     }
 }

@@ -12,8 +12,10 @@ pub(crate) enum Encoding {
     Utf8Bom,
     Utf16Le,
     Utf16Be,
-    /// ISO 8859-1 as the XML declaration names it; every byte is one character.
-    Latin1,
+    /// Whatever else the XML declaration names (ISO 8859, Windows code pages, KOI8, Shift JIS):
+    /// every byte is read as one character and written back as that byte. Names may read
+    /// strangely in messages, but tags, numbers and bytes are right in all of them.
+    Bytes,
 }
 
 /// Decodes a file. Gzip is recognized by its magic bytes, whatever the file is called.
@@ -29,9 +31,7 @@ pub(crate) fn decode(bytes: Vec<u8>, limits: &Limits) -> Result<(String, Encodin
         [0xEF, 0xBB, 0xBF, rest @ ..] => Ok((utf8(rest.to_vec())?, Encoding::Utf8Bom)),
         [0xFF, 0xFE, rest @ ..] => Ok((utf16(rest, u16::from_le_bytes)?, Encoding::Utf16Le)),
         [0xFE, 0xFF, rest @ ..] => Ok((utf16(rest, u16::from_be_bytes)?, Encoding::Utf16Be)),
-        _ if declares_latin1(&bytes) => {
-            Ok((bytes.iter().map(|&b| char::from(b)).collect(), Encoding::Latin1))
-        }
+        _ if declares_other(&bytes) => Ok((bytes.iter().map(|&b| char::from(b)).collect(), Encoding::Bytes)),
         _ => Ok((utf8(bytes)?, Encoding::Utf8)),
     }
 }
@@ -48,7 +48,7 @@ pub(crate) fn encode(text: &str, encoding: Encoding) -> Vec<u8> {
         Encoding::Utf16Be => {
             [0xFE, 0xFF].into_iter().chain(text.encode_utf16().flat_map(u16::to_be_bytes)).collect()
         }
-        Encoding::Latin1 => {
+        Encoding::Bytes => {
             let mut out = Vec::with_capacity(text.len());
             for c in text.chars() {
                 match u8::try_from(u32::from(c)) {
@@ -93,7 +93,7 @@ fn utf8(bytes: Vec<u8>) -> Result<String, Error> {
 
 fn utf16(bytes: &[u8], unit: fn([u8; 2]) -> u16) -> Result<String, Error> {
     let broken = || not_text("The file is not whole text in UTF-16");
-    if bytes.len() % 2 != 0 {
+    if !bytes.len().is_multiple_of(2) {
         return Err(broken());
     }
     let units = bytes.chunks_exact(2).map(|pair| unit([pair[0], pair[1]]));
@@ -104,13 +104,15 @@ fn not_text(sentence: &str) -> Error {
     Error::new("not-text", sentence, "Check that it is an SVG drawing, and save it again as plain SVG")
 }
 
-/// True if the XML declaration names a single-byte Latin encoding and the bytes need it.
-fn declares_latin1(bytes: &[u8]) -> bool {
-    let head = &bytes[..bytes.len().min(200)];
-    let head = String::from_utf8_lossy(head).to_ascii_lowercase();
-    let Some(end) = head.find("?>") else { return false };
-    let latin = ["iso-8859-1", "latin1", "us-ascii"].iter().any(|name| head[..end].contains(name));
-    head.starts_with("<?xml") && latin && std::str::from_utf8(bytes).is_err()
+/// True if the XML declaration names an encoding that is none of Unicode's.
+fn declares_other(bytes: &[u8]) -> bool {
+    let head = String::from_utf8_lossy(&bytes[..bytes.len().min(200)]).to_ascii_lowercase();
+    let Some((declaration, _)) = head.strip_prefix("<?xml").and_then(|rest| rest.split_once("?>")) else {
+        return false;
+    };
+    let Some((_, value)) = declaration.split_once("encoding") else { return false };
+    let name = value.trim_start_matches(|c: char| c.is_whitespace() || matches!(c, '=' | '"' | '\''));
+    !["utf", "ucs", "iso-10646", "unicode"].iter().any(|unicode| name.starts_with(unicode))
 }
 
 #[cfg(test)]
@@ -128,9 +130,17 @@ mod tests {
         round_trip("<svg>é</svg>".as_bytes());
         round_trip("\u{feff}<svg>é</svg>".as_bytes());
         round_trip(b"<?xml version='1.0' encoding='ISO-8859-1'?>\r\n<svg>\xe9</svg>");
+        round_trip(b"<?xml version=\"1.0\" encoding=\"windows-1251\"?><svg>\xcf\x98</svg>");
         for encoding in [Encoding::Utf16Le, Encoding::Utf16Be] {
             round_trip(&encode("<svg>é𝄞</svg>", encoding));
         }
+    }
+
+    #[test]
+    fn what_an_encoding_lacks_becomes_a_reference() {
+        let ascii = b"<?xml version='1.0' encoding='ISO-8859-1'?><svg></svg>".to_vec();
+        let (text, encoding) = decode(ascii, &Limits::default()).unwrap();
+        assert!(encode(&text.replace("></", ">\u{e9}\u{3b1}</"), encoding).ends_with(b">\xe9&#945;</svg>"));
     }
 
     #[test]

@@ -14,12 +14,48 @@ pub struct Position {
 impl Position {
     /// The position of byte `offset` of `text`.
     pub fn of(text: &str, offset: usize) -> Self {
-        let before = &text.as_bytes()[..offset.min(text.len())];
-        let line_start = before.iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
-        let line = 1 + before.iter().filter(|&&b| b == b'\n').count();
-        // A continuation byte (0b10xxxxxx) does not start a character.
-        let column = 1 + before[line_start..].iter().filter(|&&b| b & 0xC0 != 0x80).count();
-        Position { line, column }
+        advance(Position { line: 1, column: 1 }, &text.as_bytes()[..offset.min(text.len())])
+    }
+}
+
+/// Positions of many places of one text, each in constant time: a table of where every
+/// stretch of the text starts. Counting from the top for each object is quadratic.
+pub(crate) struct Positions<'t> {
+    text: &'t [u8],
+    starts: Vec<Position>,
+}
+
+impl<'t> Positions<'t> {
+    /// Bytes between two entries of the table.
+    const STRIDE: usize = 512;
+
+    pub fn new(text: &'t str) -> Self {
+        let mut starts = vec![Position { line: 1, column: 1 }];
+        for stretch in text.as_bytes().chunks(Self::STRIDE) {
+            let at = starts.last().map_or(Position { line: 1, column: 1 }, |&start| advance(start, stretch));
+            starts.push(at);
+        }
+        Positions { text: text.as_bytes(), starts }
+    }
+
+    /// The position of byte `offset`.
+    pub fn at(&self, offset: usize) -> Position {
+        let offset = offset.min(self.text.len());
+        let stretch = offset / Self::STRIDE;
+        advance(self.starts[stretch], &self.text[stretch * Self::STRIDE..offset])
+    }
+}
+
+/// Where a reader stands who started at `from` and read `bytes`.
+fn advance(from: Position, bytes: &[u8]) -> Position {
+    // A continuation byte (0b10xxxxxx) does not start a character.
+    let characters = |bytes: &[u8]| bytes.iter().filter(|&&b| b & 0xC0 != 0x80).count();
+    match bytes.iter().rposition(|&b| b == b'\n') {
+        None => Position { line: from.line, column: from.column + characters(bytes) },
+        Some(last) => {
+            let lines = bytes.iter().filter(|&&b| b == b'\n').count();
+            Position { line: from.line + lines, column: 1 + characters(&bytes[last + 1..]) }
+        }
     }
 }
 
@@ -105,6 +141,15 @@ mod tests {
         let text = "ab\ncé<x";
         assert_eq!(Position::of(text, 0), Position { line: 1, column: 1 });
         assert_eq!(Position::of(text, text.find('<').unwrap()), Position { line: 2, column: 3 });
+    }
+
+    #[test]
+    fn the_table_agrees_with_counting() {
+        let text = "<g>é\n".repeat(3000) + &"ü".repeat(9000);
+        let table = Positions::new(&text);
+        for offset in (0..=text.len()).step_by(997).chain([0, 511, 512, 1024, text.len()]) {
+            assert_eq!(table.at(offset), Position::of(&text, offset));
+        }
     }
 
     #[test]

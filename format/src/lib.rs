@@ -19,6 +19,7 @@
 //! The format itself is specified in `SPEC.md` beside this crate.
 
 mod artwork;
+mod css;
 mod document;
 mod encoding;
 mod error;
@@ -34,6 +35,7 @@ mod text;
 mod units;
 mod vocabulary;
 mod write;
+mod xml;
 
 pub use artwork::{Artwork, Group, Item, Part};
 pub use document::{Document, Layer};

@@ -6,7 +6,7 @@
 pub struct Limits {
     /// Bytes of input, also after unzipping.
     pub bytes: usize,
-    /// Elements, comments and runs of text.
+    /// Elements (each tag counts), comments and processing instructions.
     pub nodes: usize,
     /// Elements inside one another.
     pub depth: usize,
@@ -14,10 +14,18 @@ pub struct Limits {
     pub attributes: usize,
     /// Namespace declarations of one element.
     pub namespaces: usize,
+    /// Entity declarations.
+    pub entities: usize,
     /// Bytes that entity references may expand to, all together.
     pub expansion: usize,
     /// Copies that `<use>` makes inside annotated objects.
     pub instances: usize,
+    /// Elements inside those copies, all together.
+    pub instance_nodes: usize,
+    /// Bytes of the tags of those elements.
+    pub instance_bytes: usize,
+    /// Text objects inside annotated objects; each is laid out anew.
+    pub texts: usize,
     /// Largest absolute coordinate, in user units.
     pub coordinate: f64,
     /// Bytes of style sheets.
@@ -32,8 +40,12 @@ impl Default for Limits {
             depth: 1_000,
             attributes: 4_096,
             namespaces: 256,
+            entities: 1_024,
             expansion: 1 << 20,
             instances: 100_000,
+            instance_nodes: 500_000,
+            instance_bytes: 32 << 20,
+            texts: 1_000,
             coordinate: 1e9,
             style_sheet: 1 << 20,
         }

@@ -6,7 +6,7 @@ use std::fmt::Write;
 /// Decimals that keep a coordinate of a drawing of this size (its larger side, in user
 /// units) within a millionth of the size: 3 for 800 px, 5 for 8 mm.
 pub fn decimals_for(size: f64) -> usize {
-    const RELATIVE: f64 = 1e-6;
+    const RELATIVE: f64 = 2e-6;
     let mut decimals = 0;
     let mut step = 1.0;
     while step > size.max(f64::MIN_POSITIVE) * RELATIVE && decimals < 9 {
@@ -72,6 +72,6 @@ mod tests {
         assert_eq!(show(1.2346, 3), "1.235");
         assert_eq!(show(100.0, 0), "100");
         assert_eq!(show(1e12, 2), "1000000000000");
-        assert_eq!((decimals_for(800.0), decimals_for(8.0), decimals_for(1e9)), (4, 6, 0));
+        assert_eq!((decimals_for(800.0), decimals_for(8.0), decimals_for(1e9)), (3, 5, 0));
     }
 }

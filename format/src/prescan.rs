@@ -2,31 +2,53 @@
 //! floods and entity bombs are refused by a sentence instead of by running out of memory.
 //!
 //! This is not a parser: on malformed text it may miscount, and the parser then reports the
-//! malformed place. It never recurses and never allocates more than the entity table.
+//! malformed place. It never recurses and never allocates more than the entity table and one
+//! number for each open element.
+
+mod doctype;
 
 use crate::error::{Error, Position};
 use crate::limits::Limits;
-use std::collections::BTreeMap;
+use doctype::Entities;
+
+/// Comparisons of names that the parser may make because of long lists of attributes or
+/// namespaces (about half a second). It compares each with each.
+const COMPARISONS: usize = 200_000_000;
+/// An element with fewer attributes is not held against the drawing.
+const FEW_ATTRIBUTES: usize = 64;
+/// The parser reserves room for this many `<` and `=` before it looks at any of them: so
+/// many times the limit of nodes are room enough.
+const SIGNS_PER_NODE: [(u8, usize); 2] = [(b'<', 4), (b'=', 16)];
+/// A reference to an entity is looked up by comparing names, so an empty one has a price too.
+const LEAST_COST: usize = 16;
 
 /// Refuses text that exceeds the limits.
 pub(crate) fn prescan(text: &str, limits: &Limits) -> Result<(), Error> {
+    for (sign, most) in SIGNS_PER_NODE {
+        if text.bytes().filter(|&b| b == sign).count() > limits.nodes.saturating_mul(most) {
+            return Err(over(text, "too-many-nodes", 0, too_many_nodes(limits)));
+        }
+    }
     let mut scan = Scan {
         text,
         bytes: text.as_bytes(),
         limits,
         nodes: 0,
-        depth: 0,
+        scopes: Vec::new(),
         expansion: 0,
-        entities: BTreeMap::new(),
+        comparisons: 0,
+        entity_attributes: 0,
+        entities: Entities::default(),
     };
     scan.run()
 }
 
-/// What one reference to a general entity costs once everything in it is expanded.
-#[derive(Clone, Copy)]
-struct Cost {
-    bytes: usize,
-    tags: usize,
+fn too_many_nodes(limits: &Limits) -> String {
+    format!("The drawing has more than {} objects", limits.nodes)
+}
+
+fn over(text: &str, code: &'static str, at: usize, sentence: impl AsRef<str>) -> Error {
+    Error::new(code, sentence, "Copy what is to be filled into a new drawing").at(Position::of(text, at))
 }
 
 struct Scan<'a> {
@@ -34,30 +56,28 @@ struct Scan<'a> {
     bytes: &'a [u8],
     limits: &'a Limits,
     nodes: usize,
-    depth: usize,
+    /// For each open element, the namespace declarations in scope.
+    scopes: Vec<usize>,
     expansion: usize,
-    entities: BTreeMap<&'a str, Cost>,
+    comparisons: usize,
+    entity_attributes: usize,
+    entities: Entities<'a>,
 }
 
-impl<'a> Scan<'a> {
+impl Scan<'_> {
     fn run(&mut self) -> Result<(), Error> {
         let mut at = 0;
-        while at < self.bytes.len() {
-            match self.bytes[at] {
-                b'<' => {
-                    self.nodes += 1;
-                    if self.nodes > self.limits.nodes {
-                        return Err(self.over(
-                            "too-many-nodes",
-                            at,
-                            format!("The drawing has more than {} objects", self.limits.nodes),
-                        ));
-                    }
-                    at = self.markup(at)?;
-                }
-                b'&' => at = self.reference(at)?,
-                _ => at += 1,
+        while let Some(skipped) = self.bytes[at..].iter().position(|&b| b == b'<' || b == b'&') {
+            at += skipped;
+            if self.bytes[at] == b'&' {
+                at = self.reference(at)?;
+                continue;
             }
+            self.nodes += 1;
+            if self.nodes > self.limits.nodes {
+                return Err(over(self.text, "too-many-nodes", at, too_many_nodes(self.limits)));
+            }
+            at = self.markup(at)?;
         }
         Ok(())
     }
@@ -65,16 +85,18 @@ impl<'a> Scan<'a> {
     fn markup(&mut self, at: usize) -> Result<usize, Error> {
         let rest = &self.bytes[at..];
         if rest.starts_with(b"<!--") {
-            Ok(self.after(at + 4, "-->"))
+            Ok(after(self.text, at + 4, "-->"))
         } else if rest.starts_with(b"<![CDATA[") {
-            Ok(self.after(at + 9, "]]>"))
+            Ok(after(self.text, at + 9, "]]>"))
         } else if rest.starts_with(b"<?") {
-            Ok(self.after(at + 2, "?>"))
+            Ok(after(self.text, at + 2, "?>"))
         } else if rest.starts_with(b"<!DOCTYPE") {
-            self.doctype(at + 9)
+            let (entities, end) = doctype::read(self.text, at, self.limits)?;
+            self.entities = entities;
+            Ok(end)
         } else if rest.starts_with(b"</") {
-            self.depth = self.depth.saturating_sub(1);
-            Ok(self.after(at + 2, ">"))
+            self.scopes.pop();
+            Ok(after(self.text, at + 2, ">"))
         } else {
             self.start_tag(at)
         }
@@ -82,189 +104,122 @@ impl<'a> Scan<'a> {
 
     fn start_tag(&mut self, start: usize) -> Result<usize, Error> {
         let (mut attributes, mut namespaces) = (0, 0);
+        let mut name_start = start + 1;
         let mut at = start + 1;
         while at < self.bytes.len() {
             match self.bytes[at] {
                 quote @ (b'"' | b'\'') => {
-                    at += 1;
-                    while at < self.bytes.len() && self.bytes[at] != quote {
-                        at = if self.bytes[at] == b'&' { self.reference(at)? } else { at + 1 };
-                    }
-                    at += 1;
+                    at = self.value_end(at + 1, quote)?;
+                    name_start = at + 1;
+                }
+                b' ' | b'\t' | b'\r' | b'\n' if self.bytes.get(at + 1).is_some_and(|&b| is_name(b)) => {
+                    name_start = at + 1;
                 }
                 b'=' => {
-                    let name_is_namespace = self.text[start..at]
-                        .trim_end()
-                        .rsplit(|c: char| c.is_whitespace() || c == '"' || c == '\'')
-                        .next()
-                        .is_some_and(|name| name == "xmlns" || name.starts_with("xmlns:"));
-                    if name_is_namespace {
+                    let name = self.bytes[name_start.min(at)..at].trim_ascii_end();
+                    let is_namespace = name == b"xmlns" || name.starts_with(b"xmlns:");
+                    if is_namespace {
                         namespaces += 1
                     } else {
                         attributes += 1
                     }
-                    at += 1;
-                }
-                b'>' => {
-                    if self.bytes[at - 1] != b'/' {
-                        self.depth += 1;
+                    if attributes > self.limits.attributes || namespaces > self.limits.namespaces {
+                        return Err(self.too_many_attributes(start));
                     }
-                    break;
+                    name_start = at + 1;
                 }
-                _ => at += 1,
+                b'>' => break,
+                _ => {}
             }
+            at += 1;
         }
-        if attributes > self.limits.attributes || namespaces > self.limits.namespaces {
-            let what = format!(
-                "An object has more than {} attributes or {} namespace declarations",
-                self.limits.attributes, self.limits.namespaces
-            );
-            return Err(self.over("too-many-attributes", start, what));
+        let scope = self.scopes.last().copied().unwrap_or(0) + namespaces;
+        self.compare(start, attributes, namespaces, scope)?;
+        if self.bytes.get(at.saturating_sub(1)) != Some(&b'/') {
+            self.scopes.push(scope);
         }
-        if self.depth > self.limits.depth {
-            return Err(self.over(
-                "too-deep",
-                start,
-                format!("Objects are nested more than {} deep", self.limits.depth),
-            ));
+        if self.scopes.len() > self.limits.depth {
+            let sentence = format!("Objects are nested more than {} deep", self.limits.depth);
+            return Err(over(self.text, "too-deep", start, sentence));
         }
-        Ok(at + 1)
+        Ok((at + 1).min(self.bytes.len()))
+    }
+
+    /// The closing quote of an attribute value.
+    fn value_end(&mut self, from: usize, quote: u8) -> Result<usize, Error> {
+        let mut at = from;
+        while let Some(skipped) = self.bytes[at..].iter().position(|&b| b == quote || b == b'&') {
+            at += skipped;
+            if self.bytes[at] == quote {
+                return Ok(at);
+            }
+            at = self.reference(at)?;
+        }
+        Ok(self.bytes.len())
+    }
+
+    /// Counts what the parser will compare for a tag.
+    fn compare(&mut self, at: usize, attributes: usize, own: usize, scope: usize) -> Result<(), Error> {
+        if attributes > FEW_ATTRIBUTES {
+            self.comparisons += attributes * attributes;
+        }
+        if own > 0 {
+            self.comparisons += scope * own;
+        }
+        if scope > 4 * self.limits.namespaces || self.comparisons > COMPARISONS {
+            return Err(self.too_many_attributes(at));
+        }
+        Ok(())
+    }
+
+    fn too_many_attributes(&self, at: usize) -> Error {
+        let sentence = format!(
+            "Objects have more than {} attributes or {} namespace declarations",
+            self.limits.attributes, self.limits.namespaces
+        );
+        over(self.text, "too-many-attributes", at, sentence)
     }
 
     /// Adds up what a reference will expand to; predefined and numeric ones cost nothing.
     fn reference(&mut self, at: usize) -> Result<usize, Error> {
-        let Some((name, end)) = reference_at(self.text, at) else { return Ok(at + 1) };
-        if let Some(&cost) = self.entities.get(name) {
-            self.expansion = self.expansion.saturating_add(cost.bytes);
-            self.nodes = self.nodes.saturating_add(cost.tags);
-            if self.expansion > self.limits.expansion
-                || self.nodes > self.limits.nodes
-                || self.depth + cost.tags > self.limits.depth
-            {
-                return Err(self.over(
-                    "entity-expansion",
-                    at,
-                    format!(
-                        "Entities such as '&{name};' expand to more than {} KiB",
-                        self.limits.expansion >> 10
-                    ),
-                ));
-            }
+        let Some((name, end)) = doctype::reference_at(self.text, at) else { return Ok(at + 1) };
+        if doctype::is_predefined(name) {
+            return Ok(end);
+        }
+        // What is not in the table must not be left to the parser, which might know it.
+        let Some(cost) = self.entities.cost(name) else {
+            return Err(Error::new(
+                "unknown-entity",
+                format!("The drawing uses an entity '&{name};' that it does not declare"),
+                "Open it in Inkscape and save it again as SVG",
+            )
+            .at(Position::of(self.text, at)));
+        };
+        self.expansion = self.expansion.saturating_add(cost.bytes.max(LEAST_COST));
+        self.nodes = self.nodes.saturating_add(cost.tags);
+        self.entity_attributes = self.entity_attributes.saturating_add(cost.attributes);
+        if self.expansion > self.limits.expansion
+            || self.nodes > self.limits.nodes
+            || self.scopes.len().saturating_add(cost.tags) > self.limits.depth
+            || self.entity_attributes > self.limits.attributes
+        {
+            let kib = self.limits.expansion >> 10;
+            let sentence = format!("Entities such as '&{name};' expand to more than {kib} KiB");
+            return Err(over(self.text, "entity-expansion", at, sentence));
         }
         Ok(end)
     }
-
-    /// Reads the internal subset: entity values are costed in order of declaration. A value
-    /// may name only entities declared before it for its cost to count; one declared later
-    /// is a cycle or a forward reference, which costs as much as the limit.
-    fn doctype(&mut self, mut at: usize) -> Result<usize, Error> {
-        let mut inside = false;
-        let mut declared: Vec<(&'a str, &'a str)> = Vec::new();
-        while at < self.bytes.len() {
-            let rest = &self.bytes[at..];
-            if rest.starts_with(b"<!--") {
-                at = self.after(at + 4, "-->");
-            } else if rest.starts_with(b"<?") {
-                at = self.after(at + 2, "?>");
-            } else if inside && rest.starts_with(b"<!ENTITY") {
-                let (name, value, end) = self.entity(at + 8);
-                if let Some(value) = value {
-                    declared.push((name, value));
-                }
-                at = end;
-            } else {
-                match self.bytes[at] {
-                    quote @ (b'"' | b'\'') => at = self.after(at + 1, if quote == b'"' { "\"" } else { "'" }),
-                    b'[' => {
-                        inside = true;
-                        at += 1;
-                    }
-                    b']' => {
-                        inside = false;
-                        at += 1;
-                    }
-                    b'>' if !inside => {
-                        at += 1;
-                        break;
-                    }
-                    _ => at += 1,
-                }
-            }
-        }
-        for (name, value) in &declared {
-            let cost = self.cost_of(value, &declared);
-            self.entities.entry(name).or_insert(cost);
-        }
-        Ok(at)
-    }
-
-    fn cost_of(&self, value: &str, declared: &[(&'a str, &'a str)]) -> Cost {
-        let mut cost = Cost { bytes: value.len(), tags: value.matches('<').count() };
-        for (at, _) in value.match_indices('&') {
-            let Some((name, _)) = reference_at(value, at) else { continue };
-            let inner = match self.entities.get(name) {
-                Some(&inner) => inner,
-                None if declared.iter().any(|(other, _)| *other == name) => {
-                    Cost { bytes: self.limits.expansion, tags: 0 }
-                }
-                None => continue,
-            };
-            cost.bytes = cost.bytes.saturating_add(inner.bytes);
-            cost.tags = cost.tags.saturating_add(inner.tags);
-        }
-        cost
-    }
-
-    /// Name, value (if it is a general entity with a literal value) and end of `<!ENTITY`.
-    fn entity(&self, at: usize) -> (&'a str, Option<&'a str>, usize) {
-        let body = &self.text[at..];
-        let trimmed = body.trim_start();
-        let name = trimmed.split(|c: char| c.is_whitespace() || c == '>').next().unwrap_or("");
-        let mut i = at + (body.len() - trimmed.len()) + name.len();
-        let mut value = None;
-        while i < self.bytes.len() && self.bytes[i] != b'>' {
-            if let quote @ (b'"' | b'\'') = self.bytes[i] {
-                let end = self.bytes[i + 1..]
-                    .iter()
-                    .position(|&b| b == quote)
-                    .map_or(self.bytes.len(), |n| i + 1 + n);
-                value = value.or(self.text.get(i + 1..end));
-                i = end;
-            }
-            i += 1;
-        }
-        (name, if name == "%" { None } else { value }, (i + 1).min(self.bytes.len()))
-    }
-
-    fn after(&self, from: usize, end: &str) -> usize {
-        let from = from.min(self.bytes.len());
-        find(&self.bytes[from..], end.as_bytes()).map_or(self.bytes.len(), |i| from + i + end.len())
-    }
-
-    fn over(&self, code: &'static str, at: usize, sentence: String) -> Error {
-        Error::new(code, sentence, "Copy what is to be filled into a new drawing")
-            .at(Position::of(self.text, at))
-    }
 }
 
-fn reference_at(text: &str, at: usize) -> Option<(&str, usize)> {
-    const LONGEST_NAME: usize = 256;
-    let name_start = at + 1;
-    let rest = text.as_bytes().get(name_start..)?;
-    let length = rest.iter().take(LONGEST_NAME).position(|&b| b == b';')?;
-    Some((text.get(name_start..name_start + length)?, name_start + length + 1))
+/// True for a byte that can start a name; for finding where one starts this is enough.
+fn is_name(byte: u8) -> bool {
+    !byte.is_ascii_whitespace() && byte != b'='
 }
 
-fn find(haystack: &[u8], needle: &[u8]) -> Option<usize> {
-    let first = needle[0];
-    let mut from = 0;
-    while let Some(i) = haystack[from..].iter().position(|&b| b == first) {
-        if haystack[from + i..].starts_with(needle) {
-            return Some(from + i);
-        }
-        from += i + 1;
-    }
-    None
+/// The place after the next `end`, or the end of the text.
+fn after(text: &str, from: usize, end: &str) -> usize {
+    let rest = text.get(from..).unwrap_or("");
+    rest.find(end).map_or(text.len(), |i| from + i + end.len())
 }
 
 #[cfg(test)]
@@ -313,5 +268,32 @@ mod tests {
         {
             let _ = prescan(text, &Limits::default());
         }
+    }
+
+    #[test]
+    fn what_is_in_a_declaration_cannot_hide_an_entity() {
+        let hidden = "<!DOCTYPE s [<!ELEMENT x '><!ENTITY a \"aaaa\"><!ELEMENT y '>]><s>&a;</s>";
+        assert_eq!(code(hidden, &Limits::default()), None);
+        let limits = Limits { expansion: 15, ..Limits::default() };
+        assert_eq!(code(hidden, &limits), Some("entity-expansion"));
+        assert_eq!(code("<s>&nbsp;</s>", &limits), Some("unknown-entity"));
+        assert_eq!(code("<s>&lt;&#x41;&#65;</s>", &limits), None);
+    }
+
+    #[test]
+    fn the_number_of_entities_is_limited() {
+        let limits = Limits { entities: 3, ..Limits::default() };
+        let with = |n: usize| {
+            let declared: String = (0..n).map(|i| format!("<!ENTITY e{i} ''>")).collect();
+            code(&format!("<!DOCTYPE s [{declared}]><s/>"), &limits)
+        };
+        assert_eq!((with(2), with(3), with(4)), (None, None, Some("entity-expansion")));
+    }
+
+    #[test]
+    fn namespaces_in_scope_are_bounded() {
+        let level: String = (0..200).map(|i| format!(" xmlns:a{i}='u'")).collect();
+        let nested = format!("<g{level}>").repeat(900);
+        assert_eq!(code(&nested, &Limits::default()), Some("too-many-attributes"));
     }
 }

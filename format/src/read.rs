@@ -7,6 +7,7 @@
 mod collect;
 mod resolver;
 mod role;
+mod walk;
 
 use crate::error::Error;
 use crate::limits::Limits;
@@ -20,11 +21,25 @@ pub(crate) fn scene(
     selection: &Selection,
     limits: &Limits,
 ) -> Result<Scene, Error> {
-    let resolver = resolver::Resolver::new(xml, limits)?;
-    collect::walk(&resolver, selection)
+    let mut resolver = Resolver::new(xml, limits)?;
+    let mut selected = Vec::new();
+    for id in &selection.ids {
+        selected.push(resolver.by_reference(id)?.ok_or_else(|| unknown_id(id))?);
+    }
+    resolver.mark(&selected);
+    walk::walk(&resolver, selected.iter().map(roxmltree::Node::id).collect())
 }
 
 pub(crate) use resolver::Resolver;
+
+/// The error for an id that nothing has.
+pub(crate) fn unknown_id(id: &str) -> Error {
+    Error::new(
+        "unknown-id",
+        format!("No object has the id '{id}'"),
+        "Check the id in Object > Object Properties",
+    )
+}
 
 /// True for `<svg>`, with or without its namespace.
 pub(crate) fn is_svg_root(root: roxmltree::Node) -> bool {

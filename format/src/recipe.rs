@@ -18,15 +18,46 @@ pub struct Recipe {
 }
 
 impl Recipe {
-    /// `rinceau:source`: ids separated by spaces, spaces inside an id as `%20`.
+    /// `rinceau:source`: ids separated by spaces, white space inside an id as `%20` and so on.
     pub fn source_attribute(&self) -> String {
-        let escaped: Vec<String> =
-            self.sources.iter().map(|id| id.replace('%', "%25").replace(' ', "%20")).collect();
+        let escaped: Vec<String> = self.sources.iter().map(|id| escaped(id)).collect();
         escaped.join(" ")
     }
 
     /// Reads `rinceau:source`.
     pub(crate) fn parse_sources(text: &str) -> Vec<String> {
-        text.split_whitespace().map(|id| id.replace("%20", " ").replace("%25", "%")).collect()
+        let unescaped = |id: &str| {
+            let spaces =
+                SPACES.iter().fold(id.to_owned(), |id, &(c, escape)| id.replace(escape, &c.to_string()));
+            spaces.replace("%25", "%")
+        };
+        text.split_ascii_whitespace().map(unescaped).collect()
+    }
+}
+
+/// What separates ids in a list, and how it is written inside one.
+const SPACES: [(char, &str); 5] =
+    [(' ', "%20"), ('\t', "%09"), ('\n', "%0A"), ('\r', "%0D"), ('\u{c}', "%0C")];
+
+fn escaped(id: &str) -> String {
+    SPACES.iter().fold(id.replace('%', "%25"), |id, &(c, escape)| id.replace(c, escape))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_survive_their_list() {
+        let sources: Vec<String> =
+            ["a", "a b", "%20", "%2520", "a\t\n%", "\u{a0}\u{3000}"].map(str::to_owned).to_vec();
+        let recipe = Recipe {
+            generator: String::new(),
+            params: Map::new(),
+            seed: 0,
+            sources: sources.clone(),
+            label: String::new(),
+        };
+        assert_eq!(Recipe::parse_sources(&recipe.source_attribute()), sources);
     }
 }

@@ -1,7 +1,8 @@
 //! Basic shapes and path data to Bézier paths, in f64, in the shape's own coordinates.
 
 use crate::units::{Axis, Units};
-use kurbo::{BezPath, Point, Vec2};
+use crate::xml::PlainAttribute;
+use kurbo::{BezPath, PathEl, Point, Vec2};
 use roxmltree::Node;
 use std::f64::consts::{FRAC_PI_2, PI};
 use svgtypes::PathSegment;
@@ -9,44 +10,59 @@ use svgtypes::PathSegment;
 /// Handle length of a cubic that stands for a quarter of a unit circle (error 0.03 %).
 const KAPPA: f64 = 0.552_284_749_830_793_4;
 
-/// The outline of a shape element; `None` if it is no shape. Err is what is wrong with it.
-pub(crate) fn outline(node: Node, units: &Units) -> Option<Result<BezPath, String>> {
+/// True for the elements that have an outline.
+pub(crate) fn is_shape(node: Node) -> bool {
+    let name = node.tag_name().name();
+    matches!(name, "path" | "rect" | "image" | "circle" | "ellipse" | "line" | "polyline" | "polygon")
+}
+
+/// The outline of a shape element, empty for any other. Err is what is wrong with it.
+pub(crate) fn outline(node: Node, units: &Units) -> Result<BezPath, String> {
     let get = |name: &str, axis: Axis| length(node, name, axis, units);
-    Some(match node.tag_name().name() {
-        "path" => path(node.attribute("d").unwrap_or("")),
-        "rect" => (|| {
-            let (x, y) = (get("x", Axis::X)?.unwrap_or(0.0), get("y", Axis::Y)?.unwrap_or(0.0));
-            let (w, h) = (get("width", Axis::X)?.unwrap_or(0.0), get("height", Axis::Y)?.unwrap_or(0.0));
-            Ok(rect(x, y, w, h, (get("rx", Axis::X)?, get("ry", Axis::Y)?)))
-        })(),
-        "image" => (|| {
-            let (x, y) = (get("x", Axis::X)?.unwrap_or(0.0), get("y", Axis::Y)?.unwrap_or(0.0));
-            let (w, h) = (get("width", Axis::X)?.unwrap_or(0.0), get("height", Axis::Y)?.unwrap_or(0.0));
-            Ok(rect(x, y, w, h, (None, None)))
-        })(),
-        "circle" => (|| {
-            let r = get("r", Axis::Diagonal)?.unwrap_or(0.0);
-            Ok(ellipse(get("cx", Axis::X)?.unwrap_or(0.0), get("cy", Axis::Y)?.unwrap_or(0.0), r, r))
-        })(),
-        "ellipse" => (|| {
+    let or_zero = |name: &str, axis: Axis| Ok::<f64, String>(get(name, axis)?.unwrap_or(0.0));
+    match node.tag_name().name() {
+        "path" => path(node.plain("d").unwrap_or("")),
+        name @ ("rect" | "image") => {
+            let (x, y) = (or_zero("x", Axis::X)?, or_zero("y", Axis::Y)?);
+            let (w, h) = (or_zero("width", Axis::X)?, or_zero("height", Axis::Y)?);
+            let radii =
+                if name == "rect" { (get("rx", Axis::X)?, get("ry", Axis::Y)?) } else { (None, None) };
+            Ok(rect(x, y, w, h, radii))
+        }
+        "circle" => {
+            let r = or_zero("r", Axis::Diagonal)?;
+            Ok(ellipse(or_zero("cx", Axis::X)?, or_zero("cy", Axis::Y)?, r, r))
+        }
+        "ellipse" => {
             let (rx, ry) = (get("rx", Axis::X)?, get("ry", Axis::Y)?);
             let (rx, ry) = (rx.or(ry).unwrap_or(0.0), ry.or(rx).unwrap_or(0.0));
-            Ok(ellipse(get("cx", Axis::X)?.unwrap_or(0.0), get("cy", Axis::Y)?.unwrap_or(0.0), rx, ry))
-        })(),
-        "line" => (|| {
+            Ok(ellipse(or_zero("cx", Axis::X)?, or_zero("cy", Axis::Y)?, rx, ry))
+        }
+        "line" => {
             let mut path = BezPath::new();
-            path.move_to((get("x1", Axis::X)?.unwrap_or(0.0), get("y1", Axis::Y)?.unwrap_or(0.0)));
-            path.line_to((get("x2", Axis::X)?.unwrap_or(0.0), get("y2", Axis::Y)?.unwrap_or(0.0)));
+            path.move_to((or_zero("x1", Axis::X)?, or_zero("y1", Axis::Y)?));
+            path.line_to((or_zero("x2", Axis::X)?, or_zero("y2", Axis::Y)?));
             Ok(path)
-        })(),
-        "polyline" => poly(node.attribute("points").unwrap_or(""), false),
-        "polygon" => poly(node.attribute("points").unwrap_or(""), true),
-        _ => return None,
-    })
+        }
+        "polyline" => poly(node.plain("points").unwrap_or(""), false),
+        "polygon" => poly(node.plain("points").unwrap_or(""), true),
+        _ => Ok(BezPath::new()),
+    }
+}
+
+/// The points of a path command, with its handles.
+pub(crate) fn points_of(el: &PathEl) -> impl Iterator<Item = Point> + use<> {
+    let points: [Option<Point>; 3] = match *el {
+        PathEl::MoveTo(p) | PathEl::LineTo(p) => [Some(p), None, None],
+        PathEl::QuadTo(a, p) => [Some(a), Some(p), None],
+        PathEl::CurveTo(a, b, p) => [Some(a), Some(b), Some(p)],
+        PathEl::ClosePath => [None; 3],
+    };
+    points.into_iter().flatten()
 }
 
 fn length(node: Node, name: &str, axis: Axis, units: &Units) -> Result<Option<f64>, String> {
-    match node.attribute(name) {
+    match node.plain(name) {
         None => Ok(None),
         Some(text) if text.trim().is_empty() || text.trim() == "auto" => Ok(None),
         Some(text) => {
@@ -100,8 +116,9 @@ fn ellipse(cx: f64, cy: f64, rx: f64, ry: f64) -> BezPath {
 }
 
 fn poly(points: &str, closed: bool) -> Result<BezPath, String> {
-    // The points parser stops silently at an error, so what it left is looked at as well.
-    if points.split(|c: char| c.is_whitespace() || c == ',').any(|token| token.eq_ignore_ascii_case("nan")) {
+    // The points parser stops silently at an error, so what it would stop at is looked for.
+    let is_point = |b: u8| b.is_ascii_digit() || b.is_ascii_whitespace() || b"+-.,eE".contains(&b);
+    if !points.bytes().all(is_point) {
         return Err("its points are not all numbers".into());
     }
     let mut path = BezPath::new();

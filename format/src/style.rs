@@ -1,9 +1,11 @@
 //! Paint carried along: the cascade of presentation attributes, style sheets and `style`.
 
+use crate::css::{self, Sheet};
 use crate::units::{Axis, Units};
+use crate::xml::PlainAttribute;
 use roxmltree::Node;
-use simplecss::{AttributeOperator, PseudoClass, StyleSheet};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Which inside a path fills.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -51,20 +53,32 @@ const TEXT: [&str; 12] = [
 /// Properties of one object alone.
 const OWN: [&str; 4] = ["display", "vector-effect", "transform", "transform-origin"];
 
+/// A longer value is left out: each object that inherits it writes it out again.
+const LONGEST_VALUE: usize = 4096;
+/// Widths beyond this many user units are left out, as the coordinates would be.
+const WIDEST: f64 = 1e9;
+
 /// The computed paint of an object: property names to values, without defaults.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Style {
-    properties: BTreeMap<&'static str, String>,
+    /// Shared, map and values, since a group's children inherit them by the thousand.
+    properties: Arc<BTreeMap<&'static str, Arc<str>>>,
     /// Product of the opacities of the object and the groups around it, inside its role.
     opacity: f64,
     /// Font size in px, for `em`.
     font_size: f64,
 }
 
+impl Default for Style {
+    fn default() -> Self {
+        Style::initial()
+    }
+}
+
 impl Style {
     /// The style of the root's parent: SVG's initial values.
     pub(crate) fn initial() -> Self {
-        Style { properties: BTreeMap::new(), opacity: 1.0, font_size: 16.0 }
+        Style { properties: Arc::default(), opacity: 1.0, font_size: 16.0 }
     }
 
     /// A style that only fills.
@@ -76,13 +90,23 @@ impl Style {
 
     /// A property's value, if it is not the default.
     pub fn get(&self, name: &str) -> Option<&str> {
-        self.properties.get(name).map(String::as_str)
+        self.properties.get(name).map(AsRef::as_ref)
     }
 
     /// Sets a property that is carried along; others are ignored.
     pub fn set(&mut self, name: &str, value: &str) {
         if let Some(&name) = INHERITED.iter().chain(&OWN).find(|&&known| known == name) {
-            self.properties.insert(name, value.to_owned());
+            self.put(name, value);
+        }
+    }
+
+    fn put(&mut self, name: &'static str, value: &str) {
+        Arc::make_mut(&mut self.properties).insert(name, value.into());
+    }
+
+    fn remove(&mut self, name: &str) {
+        if self.properties.contains_key(name) {
+            Arc::make_mut(&mut self.properties).remove(name);
         }
     }
 
@@ -124,26 +148,27 @@ impl Style {
     pub fn scaled(&self, factor: f64, decimals: usize) -> Self {
         let mut style = self.clone();
         for name in ["stroke-width", "stroke-dashoffset", "stroke-dasharray"] {
-            let Some(value) = style.properties.get_mut(name) else { continue };
+            let Some(value) = self.get(name) else { continue };
             let numbers: Option<Vec<f64>> =
                 value.split([' ', ',']).filter(|t| !t.is_empty()).map(|t| t.parse().ok()).collect();
             let Some(numbers) = numbers else { continue };
             let mut text = String::new();
             for number in numbers {
+                let scaled = (number * factor).clamp(-WIDEST, WIDEST);
                 if !text.is_empty() {
                     text.push(' ');
                 }
-                crate::number::write_number(&mut text, number * factor, decimals);
+                crate::number::write_number(&mut text, scaled, decimals);
             }
-            *value = text;
+            style.put(name, &text);
         }
         if factor != 1.0
             && style.get("stroke").is_some_and(|s| s != "none")
             && style.get("stroke-width").is_none()
         {
             let mut text = String::new();
-            crate::number::write_number(&mut text, factor, decimals);
-            style.properties.insert("stroke-width", text);
+            crate::number::write_number(&mut text, factor.clamp(0.0, WIDEST), decimals);
+            style.put("stroke-width", &text);
         }
         style
     }
@@ -190,28 +215,29 @@ impl Style {
 
 /// All style sheets of a drawing.
 pub(crate) struct Cascade<'a> {
-    sheet: StyleSheet<'a>,
+    sheet: Sheet<'a>,
 }
 
 impl<'a> Cascade<'a> {
     pub fn new(sheets: &[&'a str]) -> Self {
-        let mut sheet = StyleSheet::new();
-        for text in sheets {
-            sheet.parse_more(text);
-        }
-        Cascade { sheet }
+        Cascade { sheet: Sheet::new(sheets) }
+    }
+
+    /// True once matching selectors has taken longer than any drawing needs.
+    pub fn is_exhausted(&self) -> bool {
+        self.sheet.is_exhausted()
     }
 
     /// The computed style of a node inside a parent's.
-    pub fn computed(&self, node: Node, parent: &Style, units: &Units) -> Style {
+    pub fn computed(&self, node: Node<'a, '_>, parent: &Style, units: &Units) -> Style {
         let mut style = parent.clone();
         for name in OWN {
-            style.properties.remove(name);
+            style.remove(name);
         }
         let mut opacity = 1.0;
         for (name, value) in self.declared(node) {
             if name == "opacity" {
-                opacity = parse_opacity(&value).unwrap_or(1.0);
+                opacity = parse_opacity(value).unwrap_or(1.0);
             } else if name == "font-size" {
                 let relative = Units { em: parent.font_size, viewport: units.viewport };
                 let percent = value
@@ -220,8 +246,8 @@ impl<'a> Cascade<'a> {
                     .and_then(|p| p.parse::<f64>().ok())
                     .map(|p| p / 100.0 * parent.font_size);
                 if let Some(size) = percent
-                    .or_else(|| relative.resolve(&value, Axis::Y))
-                    .filter(|s| s.is_finite() && *s >= 0.0)
+                    .or_else(|| relative.resolve(value, Axis::Y))
+                    .filter(|size| (0.0..=WIDEST).contains(size))
                 {
                     style.font_size = size;
                 }
@@ -236,28 +262,18 @@ impl<'a> Cascade<'a> {
     }
 
     /// Declarations from weakest to strongest: attributes, rules, `style`, then `!important`.
-    fn declared(&self, node: Node) -> Vec<(String, String)> {
-        let mut declared = Vec::new();
+    fn declared(&self, node: Node<'a, '_>) -> Vec<(&'a str, &'a str)> {
+        let mut declared: Vec<(&str, &str)> = node
+            .attributes()
+            .filter(|a| a.namespace().is_none() && a.value().len() <= LONGEST_VALUE)
+            .map(|a| (a.name(), a.value()))
+            .filter(|&(name, _)| name != "style" && name != "transform")
+            .collect();
         let mut important = Vec::new();
-        for attribute in node.attributes().filter(|a| a.namespace().is_none()) {
-            if attribute.name() != "style" && attribute.name() != "transform" {
-                declared.push((attribute.name().to_owned(), attribute.value().to_owned()));
-            }
-        }
-        let mut put = |d: &simplecss::Declaration| {
+        let style = css::declarations(node.plain("style").unwrap_or(""));
+        for d in self.sheet.matching(node).into_iter().chain(style) {
             let list = if d.important { &mut important } else { &mut declared };
-            list.push((d.name.to_owned(), d.value.to_owned()));
-        };
-        let element = CssNode(node);
-        for rule in &self.sheet.rules {
-            if rule.selector.matches(&element) {
-                rule.declarations.iter().for_each(&mut put);
-            }
-        }
-        if let Some(style) = node.attribute("style") {
-            for declaration in simplecss::DeclarationTokenizer::from(style) {
-                put(&declaration);
-            }
+            list.push((d.name, d.value));
         }
         declared.extend(important);
         declared
@@ -266,22 +282,23 @@ impl<'a> Cascade<'a> {
 
 fn set_property(style: &mut Style, parent: &Style, name: &'static str, value: &str, units: &Units) {
     if value == "inherit" {
-        match parent.properties.get(name) {
-            Some(inherited) => style.properties.insert(name, inherited.clone()),
-            None => style.properties.remove(name),
-        };
+        match parent.get(name) {
+            Some(inherited) => style.put(name, inherited),
+            None => style.remove(name),
+        }
         return;
     }
     let value = match name {
         "stroke-width" | "stroke-dashoffset" => match units.resolve(value, Axis::Diagonal) {
-            Some(width) if width.is_finite() => width.to_string(),
+            Some(width) if width.abs() <= WIDEST => width.to_string(),
             _ => return,
         },
         "stroke-dasharray" if value != "none" => {
             let lengths: Option<Vec<String>> = value
                 .split([' ', ','])
                 .filter(|t| !t.is_empty())
-                .map(|t| units.resolve(t, Axis::Diagonal).map(|l| l.to_string()))
+                .map(|t| units.resolve(t, Axis::Diagonal))
+                .map(|length| length.filter(|l| l.abs() <= WIDEST).map(|l| l.to_string()))
                 .collect();
             match lengths {
                 Some(lengths) => lengths.join(" "),
@@ -291,7 +308,7 @@ fn set_property(style: &mut Style, parent: &Style, name: &'static str, value: &s
         _ if value.eq_ignore_ascii_case("currentColor") => style.get("color").unwrap_or("#000000").to_owned(),
         _ => value.to_owned(),
     };
-    style.properties.insert(name, value);
+    style.put(name, &value);
 }
 
 fn parse_opacity(text: &str) -> Option<f64> {
@@ -303,31 +320,6 @@ fn parse_opacity(text: &str) -> Option<f64> {
     value.is_finite().then(|| value.clamp(0.0, 1.0))
 }
 
-/// A node as simplecss wants to see it.
-struct CssNode<'a, 'i>(Node<'a, 'i>);
-
-impl simplecss::Element for CssNode<'_, '_> {
-    fn parent_element(&self) -> Option<Self> {
-        self.0.parent_element().map(CssNode)
-    }
-
-    fn prev_sibling_element(&self) -> Option<Self> {
-        self.0.prev_sibling_element().map(CssNode)
-    }
-
-    fn has_local_name(&self, name: &str) -> bool {
-        self.0.tag_name().name() == name
-    }
-
-    fn attribute_matches(&self, local_name: &str, operator: AttributeOperator) -> bool {
-        self.0.attribute(local_name).is_some_and(|value| operator.matches(value))
-    }
-
-    fn pseudo_class_matches(&self, class: PseudoClass) -> bool {
-        matches!(class, PseudoClass::FirstChild) && self.0.prev_sibling_element().is_none()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -337,7 +329,7 @@ mod tests {
         let units = Units { viewport: kurbo::Size::new(100.0, 100.0), em: 16.0 };
         let cascade = Cascade::new(&[sheet]);
         let root = cascade.computed(document.root_element(), &Style::initial(), &units);
-        let leaf = document.descendants().filter(Node::is_element).last().unwrap();
+        let leaf = document.descendants().rfind(Node::is_element).unwrap();
         cascade.computed(leaf, &root, &units)
     }
 

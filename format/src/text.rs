@@ -3,11 +3,12 @@
 
 use crate::read::Resolver;
 use crate::style::Style;
+use crate::write::{attribute, escaped};
+use crate::xml::PlainAttribute;
 use kurbo::{BezPath, Point};
 use roxmltree::Node;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use usvg::tiny_skia_path::PathSegment;
-use xmlwriter::XmlWriter;
 
 /// Spans inside spans, and characters, that are laid out at most.
 const DEEPEST: usize = 64;
@@ -15,19 +16,21 @@ const LONGEST: usize = 20_000;
 const STACK: usize = 64 << 20;
 
 /// The outlines of a text element in its own coordinates. Err says what is missing.
-pub(crate) fn outlines(node: Node, style: &Style, resolver: &Resolver) -> Result<Vec<BezPath>, String> {
-    let mut xml = XmlWriter::new(xmlwriter::Options {
-        indent: xmlwriter::Indent::None,
-        ..xmlwriter::Options::default()
-    });
-    xml.start_element("svg");
-    xml.write_attribute("xmlns", crate::vocabulary::SVG);
-    xml.write_attribute("width", "100");
-    xml.write_attribute("height", "100");
-    xml.set_preserve_whitespaces(true);
+pub(crate) fn outlines<'a>(
+    node: Node<'a, '_>,
+    style: &Style,
+    resolver: &Resolver<'a, '_>,
+) -> Result<Vec<BezPath>, String> {
+    let is_drawn = |text: &str| text.chars().any(|c| !c.is_whitespace());
+    if !node.descendants().filter_map(|inner| inner.text()).any(is_drawn) {
+        return Ok(Vec::new());
+    }
+    let mut svg = String::from("<svg");
+    attribute(&mut svg, "xmlns", crate::vocabulary::SVG);
+    svg.push_str(" width=\"100\" height=\"100\">");
     let mut budget = LONGEST;
-    write_text(&mut xml, node, style, resolver, (DEEPEST, &mut budget))?;
-    let svg = xml.end_document();
+    write_text(&mut svg, node, style, resolver, (DEEPEST, &mut budget))?;
+    svg.push_str("</svg>");
     let thread = std::thread::Builder::new()
         .stack_size(STACK)
         .spawn(move || lay_out(&svg))
@@ -35,45 +38,63 @@ pub(crate) fn outlines(node: Node, style: &Style, resolver: &Resolver) -> Result
     thread.join().map_err(|_| "it cannot be laid out".to_owned())?
 }
 
-fn write_text(
-    xml: &mut XmlWriter,
-    node: Node,
+fn write_text<'a>(
+    svg: &mut String,
+    node: Node<'a, '_>,
     style: &Style,
-    resolver: &Resolver,
+    resolver: &Resolver<'a, '_>,
     (depth, budget): (usize, &mut usize),
 ) -> Result<(), String> {
+    let mut spend = |text: &str| {
+        *budget = budget.checked_sub(text.len()).ok_or(format!("it is longer than {LONGEST} bytes"))?;
+        Ok::<(), String>(())
+    };
     if depth == 0 {
         return Err(format!("its spans are nested more than {DEEPEST} deep"));
     }
-    xml.start_element(if node.tag_name().name() == "text" { "text" } else { "tspan" });
+    let name = if node.tag_name().name() == "text" { "text" } else { "tspan" };
+    svg.push('<');
+    svg.push_str(name);
     for name in ["x", "y", "dx", "dy", "rotate", "textLength", "lengthAdjust"] {
-        if let Some(value) = node.attribute(name) {
-            xml.write_attribute(name, value);
+        if let Some(value) = node.plain(name) {
+            spend(value)?;
+            attribute(svg, name, value);
         }
     }
-    xml.write_attribute("style", &style.text_css());
-    xml.write_attribute(
-        "xml:space",
-        node.attribute(("http://www.w3.org/XML/1998/namespace", "space")).unwrap_or("default"),
-    );
+    let css = style.text_css();
+    spend(&css)?;
+    attribute(svg, "style", &css);
+    let space = node.attribute(("http://www.w3.org/XML/1998/namespace", "space"));
+    attribute(svg, "xml:space", space.unwrap_or("default"));
+    svg.push('>');
     for child in node.children() {
         if child.is_text() {
             let text = child.text().unwrap_or("");
             *budget = budget.checked_sub(text.len()).ok_or(format!("it is longer than {LONGEST} bytes"))?;
-            xml.write_text(text);
+            svg.push_str(&escaped(text));
         } else if child.is_element() && child.tag_name().name() == "tspan" {
             let units = crate::units::Units { viewport: resolver.view.size(), em: style.font_size() };
             let style = resolver.cascade.computed(child, style, &units);
-            write_text(xml, child, &style, resolver, (depth - 1, budget))?;
+            write_text(svg, child, &style, resolver, (depth - 1, budget))?;
         }
     }
-    xml.end_element();
+    svg.push_str(&format!("</{name}>"));
     Ok(())
 }
 
+/// The installed fonts. Finding them takes a tenth of a second, so it is done once.
+fn fonts() -> Arc<usvg::fontdb::Database> {
+    static FONTS: OnceLock<Arc<usvg::fontdb::Database>> = OnceLock::new();
+    let find = || {
+        let mut fonts = usvg::fontdb::Database::new();
+        fonts.load_system_fonts();
+        Arc::new(fonts)
+    };
+    FONTS.get_or_init(find).clone()
+}
+
 fn lay_out(svg: &str) -> Result<Vec<BezPath>, String> {
-    let mut options = usvg::Options::default();
-    Arc::make_mut(&mut options.fontdb).load_system_fonts();
+    let options = usvg::Options { fontdb: fonts(), ..usvg::Options::default() };
     let tree = usvg::Tree::from_str(svg, &options).map_err(|error| error.to_string())?;
     let mut paths = Vec::new();
     let mut groups = vec![tree.root()];

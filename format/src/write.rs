@@ -20,6 +20,8 @@ pub(crate) struct Target<'a> {
     pub has_namespace: bool,
     /// From root units to the layer's own coordinates.
     pub inverse: Affine,
+    /// True if the root was an empty element, which it has to become again without the layer.
+    pub in_empty_root: bool,
     /// The line end of the drawing.
     pub newline: &'a str,
 }
@@ -45,6 +47,9 @@ pub(crate) fn layer(artwork: &Artwork, recipe: &Recipe, target: &Target) -> Stri
     attribute(&mut out, "inkscape:groupmode", "layer");
     attribute(&mut out, "inkscape:label", &recipe.label);
     recipe_attributes(&mut out, recipe, "rinceau");
+    if target.in_empty_root {
+        attribute(&mut out, "rinceau:root", "empty");
+    }
     out.push('>');
     out.push_str(&content(artwork, target));
     let _ = write!(out, "</{prefix}g>");

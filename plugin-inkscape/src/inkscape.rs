@@ -23,15 +23,16 @@ pub fn called_by_inkscape(arguments: &[OsString]) -> bool {
 /// Runs the tool Inkscape asks for.
 pub fn run(arguments: &[OsString]) -> ExitCode {
     let call = Call::parse(arguments);
-    let input = match output::read(call.file.as_deref()) {
-        Ok(input) => input,
-        Err(error) => return fail(&error),
-    };
-    match call.result(input.clone()).and_then(|bytes| output::write(None, &bytes)) {
+    let file = call.file.clone();
+    let result = output::read(file.as_deref())
+        .and_then(|input| call.result(input))
+        .and_then(|bytes| output::write(None, &bytes));
+    match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // The drawing goes back unchanged, whatever happened.
-            let _ = output::write(None, &input);
+            // The drawing goes back unchanged, whatever happened. It comes from the file again:
+            // what was read of a drawing beyond the limit ends there.
+            let _ = file.map(|file| output::copy(&file));
             fail(&error)
         }
     }

@@ -80,31 +80,25 @@ impl Inx {
     }
 
     fn finish(mut self, tip: &str, menus: &[&str], live_preview: bool, binary: &str) -> String {
-        let xml = &mut self.0;
-        xml.start_element("effect");
+        self.0.start_element("effect");
         if !live_preview {
-            xml.write_attribute("needs-live-preview", "false");
+            self.0.write_attribute("needs-live-preview", "false");
         }
-        xml.start_element("object-type");
-        xml.write_text("all");
-        xml.end_element();
-        xml.start_element("effects-menu");
+        self.text("object-type", &[], "all");
+        self.0.start_element("effects-menu");
         for menu in menus {
-            xml.start_element("submenu");
-            xml.write_attribute("name", *menu);
+            self.0.start_element("submenu");
+            self.0.write_attribute("name", *menu);
         }
         for _ in menus {
-            xml.end_element();
+            self.0.end_element();
         }
-        xml.end_element();
-        xml.start_element("menu-tip");
-        xml.write_text(tip);
-        xml.end_element();
-        xml.end_element();
-        xml.start_element("script");
-        xml.start_element("command");
-        xml.write_attribute("location", "inx");
-        xml.write_text(binary);
+        self.0.end_element();
+        self.text("menu-tip", &[], tip);
+        self.0.end_element();
+        self.0.start_element("script");
+        // Without a space around it: it is the name of a file.
+        self.text("command", &[("location", "inx")], binary);
         self.0.end_document()
     }
 }
@@ -204,12 +198,11 @@ fn parameter(inx: &mut Inx, spec: &ParamSpec) {
             inx.0.start_element("param");
             common(inx, spec.name, "optiongroup", spec.label, spec.help);
             inx.0.write_attribute("appearance", "combo");
-            for (value, label) in choices {
-                let mut attributes = vec![("value", *value)];
-                if *value == spec.default {
-                    attributes.push(("default", "true"));
-                }
-                inx.text("option", &attributes, label);
+            // The first option is the default; there is no attribute for it.
+            let (default, others): (Vec<_>, Vec<_>) =
+                choices.iter().partition(|(value, _)| *value == spec.default);
+            for (value, label) in default.into_iter().chain(others) {
+                inx.text("option", &[("value", value)], label);
             }
             inx.0.end_element();
         }

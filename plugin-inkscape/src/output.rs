@@ -54,11 +54,15 @@ pub fn write(path: Option<&Path>, bytes: &[u8]) -> Result<(), Error> {
     })
 }
 
+/// Copies a file of any size to standard output as it is.
+pub fn copy(path: &Path) -> io::Result<()> {
+    let mut out = io::stdout().lock();
+    io::copy(&mut File::open(path)?, &mut out)?;
+    out.flush()
+}
+
 fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let target = match fs::canonicalize(path) {
-        Ok(target) => target,
-        Err(_) => path.to_owned(),
-    };
+    let target = followed(path);
     let existing = fs::metadata(&target).ok();
     if existing.as_ref().is_some_and(|metadata| !metadata.is_file()) {
         // A device or pipe such as /dev/stdout: there is nothing to replace.
@@ -84,6 +88,24 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.as_file().sync_all()?;
     file.persist(&target).map_err(|error| error.error)?;
     Ok(())
+}
+
+/// The file at the end of a chain of links. It need not exist yet; an open stream such as
+/// `/dev/stdout` exists under no other name.
+fn followed(path: &Path) -> PathBuf {
+    // What Linux follows before it calls the chain a loop.
+    const MOST_LINKS: usize = 40;
+    if let Ok(target) = fs::canonicalize(path) {
+        return target;
+    }
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match fs::read_link(&path) {
+            Ok(link) if !path.exists() => path = path.parent().unwrap_or(Path::new("")).join(link),
+            _ => break,
+        }
+    }
+    path
 }
 
 fn gzip(bytes: &[u8]) -> io::Result<Vec<u8>> {

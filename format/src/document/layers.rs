@@ -8,6 +8,7 @@ use crate::read::{Resolver, layer_transform};
 use crate::recipe::Recipe;
 use crate::vocabulary::{NAMESPACE, SVG};
 use crate::write::{self, Target, attribute, escaped};
+use crate::xml::{PlainAttribute, is_verbatim};
 use kurbo::Affine;
 use roxmltree::Node;
 use std::collections::HashSet;
@@ -29,6 +30,7 @@ impl Document {
         self.parse(|xml| {
             let mut layers = Vec::new();
             for node in result_nodes(xml) {
+                self.check_verbatim(node)?;
                 layers.push(Layer { recipe: read_recipe(self, node)?, range: node.range() });
             }
             Ok(layers)
@@ -36,6 +38,8 @@ impl Document {
     }
 
     /// The drawing without its result layers. The line break written before a layer goes too.
+    ///
+    /// Errors: as [`Document::layers`].
     pub fn without_layers(&self) -> Result<Document, Error> {
         let newline = self.newline();
         let edits = self.layers()?.into_iter().map(|layer| {
@@ -43,7 +47,29 @@ impl Document {
             let start = if self.text[..start].ends_with(newline) { start - newline.len() } else { start };
             (start..layer.range.end, String::new())
         });
-        Ok(Document { text: splice(&self.text, edits.collect()), ..self.clone() })
+        let edits: Vec<_> = edits.collect();
+        let text = self.parse(|xml| {
+            let whole = self.emptied_root(xml, &edits).map(|edit| vec![edit]);
+            Ok(splice(&self.text, whole.unwrap_or(edits)))
+        })?;
+        Ok(Document { text, ..self.clone() })
+    }
+
+    /// What makes the root `<svg/>` again, if it was before the layers.
+    fn emptied_root(
+        &self,
+        xml: &roxmltree::Document,
+        removed: &[(Range<usize>, String)],
+    ) -> Option<(Range<usize>, String)> {
+        let root = xml.root_element();
+        root.children().find(|node| node.attribute((NAMESPACE, "root")) == Some("empty"))?;
+        let range = root.range();
+        let (tag_end, closes) = start_tag_end(&self.text[range.clone()]);
+        let content = range.start + tag_end + 1;
+        let removed: usize = removed.iter().map(|(range, _)| range.len()).sum();
+        let close = content + removed;
+        let is_empty = !closes && self.text.get(close..range.end)?.starts_with("</");
+        is_empty.then(|| (range.start + tag_end..range.end, "/>".to_owned()))
     }
 
     /// Puts an artwork into the drawing. A layer of the same generator over the same sources
@@ -54,6 +80,7 @@ impl Document {
     pub fn with_layer(&self, artwork: &Artwork, recipe: &Recipe) -> Result<Document, Error> {
         let text = self.parse(|xml| {
             let mut mine = None;
+            let sources: HashSet<&String> = recipe.sources.iter().collect();
             for node in result_nodes(xml) {
                 let old = read_recipe(self, node)?;
                 if old.generator != recipe.generator {
@@ -61,7 +88,7 @@ impl Document {
                 }
                 if old.sources == recipe.sources {
                     mine = mine.or(Some(node));
-                } else if let Some(shared) = old.sources.iter().find(|id| recipe.sources.contains(id)) {
+                } else if let Some(shared) = old.sources.iter().find(|id| sources.contains(id)) {
                     let sentence = format!(
                         "'{shared}' is already filled, together with others, in the layer '{}'",
                         label_of(node)
@@ -76,7 +103,7 @@ impl Document {
             }
             match mine {
                 Some(node) => self.replaced(xml, node, artwork, recipe),
-                None => Ok(self.appended(xml, artwork, recipe)),
+                None => self.appended(xml, artwork, recipe),
             }
         })?;
         Ok(Document { text, ..self.clone() })
@@ -89,6 +116,7 @@ impl Document {
         artwork: &Artwork,
         recipe: &Recipe,
     ) -> Result<String, Error> {
+        self.check_verbatim(node)?;
         let resolver = Resolver::new(xml, &self.limits)?;
         let full = layer_transform(&resolver, node);
         let inverse = full.inverse();
@@ -108,17 +136,40 @@ impl Document {
             .next()
             .unwrap_or("g")
             .to_owned();
-        let id = node.attribute("id").map_or_else(|| free_id(xml, &recipe.label), str::to_owned);
+        let id = node.plain("id").map_or_else(|| free_id(xml, &recipe.label), str::to_owned);
         let newline = self.newline();
         let target = Target {
             id: &id,
             svg_prefix: tag_name.strip_suffix('g').unwrap_or(""),
             has_namespace: node.tag_name().namespace() == Some(SVG),
             inverse,
+            in_empty_root: false,
             newline,
         };
 
         let mut edits = Vec::new();
+        let missing = self.recipe_edits(node, recipe, &mut edits)?;
+        let tag = range.start + tag_end;
+        let content = write::content(artwork, &target);
+        if closes {
+            edits.push((tag..range.end, format!("{missing}>{content}</{tag_name}>")));
+        } else {
+            let close = range.start + element.rfind("</").unwrap_or(element.len());
+            if !missing.is_empty() {
+                edits.push((tag..tag, missing));
+            }
+            edits.push((tag + 1..close, content));
+        }
+        Ok(splice(&self.text, edits))
+    }
+
+    /// Edits that renew a layer's recipe; returns what its tag still lacks.
+    fn recipe_edits(
+        &self,
+        node: Node,
+        recipe: &Recipe,
+        edits: &mut Vec<(Range<usize>, String)>,
+    ) -> Result<String, Error> {
         let params = serde_json::Value::Object(recipe.params.clone()).to_string();
         let fresh =
             [("params", params), ("seed", recipe.seed.to_string()), ("source", recipe.source_attribute())];
@@ -139,28 +190,27 @@ impl Document {
             ("inkscape", crate::vocabulary::INKSCAPE),
             ("sodipodi", crate::vocabulary::SODIPODI),
         ] {
-            if node.lookup_namespace_uri(Some(prefix)) != Some(uri) && !declares(node, prefix) {
+            if node.lookup_namespace_uri(Some(prefix)) != Some(uri) {
+                if declares_itself(node, prefix) {
+                    return Err(self.prefix_taken(node, prefix));
+                }
                 attribute(&mut missing, &format!("xmlns:{prefix}"), uri);
             }
         }
-        let tag = range.start + tag_end;
-        let content = write::content(artwork, &target);
-        if closes {
-            edits.push((tag..range.end, format!("{missing}>{content}</{tag_name}>")));
-        } else {
-            let close = range.start + element.rfind("</").unwrap_or(element.len());
-            if !missing.is_empty() {
-                edits.push((tag..tag, missing));
-            }
-            edits.push((tag + 1..close, content));
-        }
-        Ok(splice(&self.text, edits))
+        Ok(missing)
     }
 
-    fn appended(&self, xml: &roxmltree::Document, artwork: &Artwork, recipe: &Recipe) -> String {
+    fn appended(
+        &self,
+        xml: &roxmltree::Document,
+        artwork: &Artwork,
+        recipe: &Recipe,
+    ) -> Result<String, Error> {
         let root = xml.root_element();
+        self.check_verbatim(root)?;
         let range = root.range();
         let element = &self.text[range.clone()];
+        let (tag_end, closes) = start_tag_end(element);
         let name =
             element[1..].split(|c: char| c.is_whitespace() || c == '>' || c == '/').next().unwrap_or("svg");
         let prefix = name.strip_suffix("svg").unwrap_or("");
@@ -171,23 +221,45 @@ impl Document {
             svg_prefix: prefix,
             has_namespace: root.tag_name().namespace() == Some(SVG),
             inverse: Affine::IDENTITY,
+            in_empty_root: closes,
             newline,
         };
         let layer = write::layer(artwork, recipe, &target);
-        let (tag_end, closes) = start_tag_end(element);
         let edit = if closes {
             (range.start + tag_end..range.end, format!(">{newline}{layer}</{name}>"))
         } else {
             let close = range.start + element.rfind("</").unwrap_or(element.len());
             (close..close, format!("{newline}{layer}"))
         };
-        splice(&self.text, vec![edit])
+        Ok(splice(&self.text, vec![edit]))
     }
 
     /// The drawing's own line end.
     pub(super) fn newline(&self) -> &'static str {
         let first = self.text.find('\n');
         if first.is_some_and(|i| i > 0 && self.text.as_bytes()[i - 1] == b'\r') { "\r\n" } else { "\n" }
+    }
+
+    /// Errors if the element's tags are not where its range says, in the body of the drawing.
+    pub(super) fn check_verbatim(&self, node: Node) -> Result<(), Error> {
+        if is_verbatim(node) {
+            return Ok(());
+        }
+        Err(Error::new(
+            "in-entity",
+            format!("'{}' comes out of an entity of the drawing, at least in part", label_of(node)),
+            "Save the drawing in Inkscape first, which writes entities out",
+        )
+        .at(self.position(node)))
+    }
+
+    pub(super) fn prefix_taken(&self, node: Node, prefix: &str) -> Error {
+        Error::new(
+            "prefix-taken",
+            format!("The object '{}' declares the prefix '{prefix}' for something else", label_of(node)),
+            "Save the drawing in Inkscape first, which declares prefixes once",
+        )
+        .at(self.position(node))
     }
 
     pub(super) fn position(&self, node: Node) -> crate::error::Position {
@@ -235,7 +307,7 @@ fn read_recipe(document: &Document, node: Node) -> Result<Recipe, Error> {
 }
 
 fn label_of(node: Node) -> String {
-    let label = node.attribute((crate::vocabulary::INKSCAPE, "label")).or_else(|| node.attribute("id"));
+    let label = node.attribute((crate::vocabulary::INKSCAPE, "label")).or_else(|| node.plain("id"));
     label.unwrap_or("Ornament").to_owned()
 }
 
@@ -253,17 +325,15 @@ fn free_id(xml: &roxmltree::Document, label: &str) -> String {
         base if base.starts_with(|c: char| c.is_ascii_digit()) => format!("ornament-{base}"),
         base => base.to_owned(),
     };
-    // The ids of the layer's content start with the layer's, so no id may start with it.
-    let taken: HashSet<&str> = xml
-        .descendants()
-        .filter_map(|node| node.attribute("id"))
-        .filter(|id| id.starts_with(&base))
-        .collect();
-    let is_free = |id: &str| {
-        !taken
-            .iter()
-            .any(|other| other.strip_prefix(id).is_some_and(|rest| rest.is_empty() || rest.starts_with('-')))
-    };
+    // The ids of the layer's content start with the layer's, so no id may start with it and a
+    // dash. A number of seven digits is as long as the limit of nodes can make it.
+    let longest = base.len() + 1 + 7;
+    let mut taken: HashSet<&str> = HashSet::new();
+    for id in xml.descendants().filter_map(|node| node.plain("id")).filter(|id| id.starts_with(&base)) {
+        taken.insert(id);
+        taken.extend(id.match_indices('-').take_while(|(i, _)| *i <= longest).map(|(i, _)| &id[..i]));
+    }
+    let is_free = |id: &str| !taken.contains(id);
     let mut id = base.clone();
     let mut n = 1;
     while !is_free(&id) {
@@ -279,6 +349,8 @@ fn quoted_for(text: &str, range: Range<usize>, value: &str) -> String {
     if text.as_bytes().get(range.end) == Some(&b'\'') { escaped.replace('\'', "&#39;") } else { escaped }
 }
 
-fn declares(node: Node, prefix: &str) -> bool {
-    node.namespaces().any(|namespace| namespace.name() == Some(prefix))
+/// True if the element itself, and not one around it, declares the prefix.
+fn declares_itself(node: Node, prefix: &str) -> bool {
+    let of = |node: Node| node.lookup_namespace_uri(Some(prefix)).map(str::to_owned);
+    of(node).is_some() && node.parent().is_none_or(|parent| of(parent) != of(node))
 }

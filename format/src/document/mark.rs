@@ -3,9 +3,10 @@
 use super::Document;
 use super::edit::{splice, start_tag_end};
 use crate::error::Error;
-use crate::read::Resolver;
+use crate::read::{Resolver, unknown_id};
 use crate::vocabulary::{NAMESPACE, Role};
 use crate::write::{attribute, escaped};
+use crate::xml::PlainAttribute;
 use roxmltree::Node;
 use std::ops::Range;
 
@@ -36,24 +37,19 @@ impl Document {
             let resolver = Resolver::new(xml, &self.limits)?;
             let mut nodes: Vec<Node> = Vec::new();
             for id in ids {
-                let node = resolver.by_id(id, None)?.ok_or_else(|| {
-                    Error::new(
-                        "unknown-id",
-                        format!("No object has the id '{id}'"),
-                        "Check the id in Object > Object Properties",
-                    )
-                })?;
+                let node = resolver.by_reference(id)?.ok_or_else(|| unknown_id(id))?;
                 if !nodes.contains(&node) {
                     nodes.push(node);
                 }
             }
             let mut edits = Vec::new();
+            self.check_verbatim(xml.root_element())?;
             let prefix = if role.is_some() { self.declare(xml, &mut edits) } else { String::new() };
             for &node in &nodes {
                 self.mark(node, role, &prefix, &mut edits)?;
             }
             if role == Some(Role::Guide) && resolver.by_id(ARROW, None)?.is_none() {
-                edits.push(self.arrow(xml));
+                edits.extend(self.arrow(xml));
             }
             Ok(splice(&self.text, edits))
         })?;
@@ -88,15 +84,11 @@ impl Document {
         prefix: &str,
         edits: &mut Vec<(Range<usize>, String)>,
     ) -> Result<(), Error> {
-        let range = node.range();
-        if !self.text[range.clone()].starts_with('<') {
-            return Err(Error::new(
-                "in-entity",
-                "The object comes out of an entity",
-                "Save the drawing in Inkscape first",
-            )
-            .at(self.position(node)));
+        self.check_verbatim(node)?;
+        if role.is_some() && node.lookup_namespace_uri(Some(prefix)).is_some_and(|uri| uri != NAMESPACE) {
+            return Err(self.prefix_taken(node, prefix));
         }
+        let range = node.range();
         let mut fresh = String::new();
         let mut put =
             |own: Option<roxmltree::Attribute>, name: &str, value: Option<String>| match (own, value) {
@@ -119,7 +111,7 @@ impl Document {
             role.map(|role| role.name().to_owned()),
         );
         let others: Vec<&str> = node
-            .attribute("class")
+            .plain("class")
             .unwrap_or("")
             .split_whitespace()
             .filter(|token| Role::from_class(token).is_none())
@@ -128,7 +120,7 @@ impl Document {
             others.into_iter().map(str::to_owned).chain(role.map(Role::class)).collect::<Vec<_>>().join(" ");
         put(find(None, "class"), "class", Some(class).filter(|class| !class.is_empty()));
         if let Some(role) = role {
-            let style = marked_style(node.attribute("style").unwrap_or(""), role);
+            let style = marked_style(node.plain("style").unwrap_or(""), role);
             put(find(None, "style"), "style", Some(style).filter(|style| !style.is_empty()));
         }
         if !fresh.is_empty() {
@@ -138,30 +130,32 @@ impl Document {
         Ok(())
     }
 
-    /// An arrow head in `<defs>` of its own at the start of the drawing.
-    fn arrow(&self, xml: &roxmltree::Document) -> (Range<usize>, String) {
+    /// An arrow head in `<defs>` of its own at the end of the drawing, so that the places of
+    /// objects without an id stay what they are in recipes.
+    fn arrow(&self, xml: &roxmltree::Document) -> Option<(Range<usize>, String)> {
         let root = xml.root_element();
         let range = root.range();
         let element = &self.text[range.clone()];
-        let (tag_end, _) = start_tag_end(element);
+        let (_, closes) = start_tag_end(element);
         let name = element[1..].split(|c: char| c.is_whitespace() || c == '>').next().unwrap_or("svg");
         let p = name.strip_suffix("svg").unwrap_or("");
-        let at = range.start + tag_end + 1;
+        let at = range.start + element.rfind("</").unwrap_or(element.len());
         let newline = self.newline();
         let marker = format!(
             "{newline}<{p}defs><{p}marker id=\"{ARROW}\" orient=\"auto\" markerWidth=\"6\" markerHeight=\"6\" refX=\"4\" refY=\"3\"><{p}path d=\"M0,0L6,3L0,6Z\" style=\"fill:#ff0000\"/></{p}marker></{p}defs>"
         );
-        (at..at, marker)
+        (!closes).then_some((at..at, marker))
     }
 }
 
-/// The object's style with the mark's colours in place of its own.
+/// The object's style with the mark's colours in place of its own. The arrow head goes with
+/// the mark that it belongs to.
 fn marked_style(style: &str, role: Role) -> String {
     let colours = appearance(role);
-    let mut out: Vec<String> = simplecss::DeclarationTokenizer::from(style)
+    let mut out: Vec<String> = crate::css::declarations(style)
         .filter(|d| {
             !colours.iter().any(|(name, _)| *name == d.name)
-                && !(role == Role::Guide && d.name == "marker-end")
+                && !(d.name == "marker-end" && (role == Role::Guide || d.value.contains(ARROW)))
         })
         .map(|d| format!("{}:{}{}", d.name, d.value, if d.important { " !important" } else { "" }))
         .collect();

@@ -1,12 +1,14 @@
 //! What the walk looks up: ids, style sheets, the root's coordinate system, positions.
 
-use crate::error::{Error, Position};
+use crate::error::{Error, Position, Positions};
 use crate::limits::Limits;
-use crate::style::{Cascade, Style};
+use crate::style::Cascade;
 use crate::units::{self, Axis, Units};
-use crate::vocabulary::{SVG, XLINK};
+use crate::vocabulary::{NAMESPACE, SVG, XLINK};
+use crate::xml::PlainAttribute;
 use kurbo::{Affine, Rect, Size};
 use roxmltree::{Document, Node, NodeId};
+use std::cell::OnceCell;
 use std::collections::HashMap;
 use std::str::FromStr;
 
@@ -20,14 +22,25 @@ pub(crate) struct Resolver<'a, 'i> {
     ids: HashMap<&'a str, NodeId>,
     /// Second place of every id that stands more than once.
     twice: HashMap<&'a str, NodeId>,
+    /// Whether a node or one below it has a role, by node number.
+    marked: Vec<bool>,
+    positions: OnceCell<Positions<'i>>,
+    /// Each element's place among its siblings, from 1, by node number.
+    places: OnceCell<Vec<u32>>,
 }
+
+/// Style sheets of one drawing; each costs a sort.
+const MOST_SHEETS: usize = 1_000;
 
 impl<'a, 'i> Resolver<'a, 'i> {
     pub fn new(xml: &'a Document<'i>, limits: &'a Limits) -> Result<Self, Error> {
         let mut sheets: Vec<&'a str> = Vec::new();
         let (mut ids, mut twice) = (HashMap::new(), HashMap::new());
-        for node in xml.descendants().filter(Node::is_element) {
-            if let Some(id) = node.attribute("id") {
+        let mut marked = Vec::new();
+        for node in xml.descendants() {
+            let number = node.id().get() as usize;
+            marked.resize(number + 1, false);
+            if let Some(id) = node.plain("id") {
                 if ids.contains_key(id) {
                     twice.entry(id).or_insert(node.id());
                 } else {
@@ -37,25 +50,77 @@ impl<'a, 'i> Resolver<'a, 'i> {
             if is_svg(&node, "style") {
                 sheets.extend(node.children().filter_map(|child| child.text()));
             }
+            if has_mark(node) {
+                mark_upwards(&mut marked, node);
+            }
         }
-        if sheets.iter().map(|sheet| sheet.len()).sum::<usize>() > limits.style_sheet {
+        let size = sheets.iter().map(|sheet| sheet.len()).sum::<usize>();
+        if size > limits.style_sheet || sheets.len() > MOST_SHEETS {
             return Err(Error::new(
                 "style-too-large",
-                "The drawing's style sheets are larger than 1 MiB",
+                format!("The drawing's style sheets are larger than {} KiB", limits.style_sheet >> 10),
                 "Copy what is to be filled into a new drawing",
             ));
         }
-        let (view, px_per_unit) = root_view(xml.root_element());
-        Ok(Resolver { xml, limits, cascade: Cascade::new(&sheets), view, px_per_unit, ids, twice })
+        let (view, px_per_unit) = root_view(xml.root_element(), limits.coordinate);
+        let cascade = Cascade::new(&sheets);
+        let (positions, places) = (OnceCell::new(), OnceCell::new());
+        Ok(Resolver { xml, limits, cascade, view, px_per_unit, ids, twice, marked, positions, places })
+    }
+
+    /// Notes that these nodes are of interest although they have no role.
+    pub fn mark(&mut self, nodes: &[Node]) {
+        nodes.iter().for_each(|&node| mark_upwards(&mut self.marked, node));
+    }
+
+    /// True if the node, or one below it, has a role or was noted.
+    pub fn is_marked(&self, node: Node) -> bool {
+        self.marked.get(node.id().get() as usize).copied().unwrap_or(false)
     }
 
     /// The position of a node's start tag.
     pub fn position(&self, node: Node) -> Position {
-        Position::of(self.xml.input_text(), node.range().start)
+        self.position_at(node.range().start)
+    }
+
+    /// The position of a byte of the text.
+    pub fn position_at(&self, offset: usize) -> Position {
+        self.positions.get_or_init(|| Positions::new(self.xml.input_text())).at(offset)
+    }
+
+    /// The id of a node, or `node:` and its place from the root down where it has none.
+    pub fn reference(&self, node: Node) -> String {
+        if let Some(id) = node.plain("id").filter(|id| !id.is_empty()) {
+            return id.to_owned();
+        }
+        let places = self.places.get_or_init(|| places(self.xml));
+        let mut path: Vec<String> = node
+            .ancestors()
+            .filter(|ancestor| ancestor.parent_element().is_some())
+            .map(|ancestor| places[ancestor.id().get() as usize].to_string())
+            .collect();
+        path.reverse();
+        format!("{NODE}{}", path.join("/"))
+    }
+
+    /// The node that [`Resolver::reference`] names, or the one with this id.
+    pub fn by_reference(&self, reference: &str) -> Result<Option<Node<'a, 'i>>, Error> {
+        let found = self.by_id(reference, None)?;
+        let Some(path) = reference.strip_prefix(NODE).filter(|_| found.is_none()) else { return Ok(found) };
+        let mut node = self.xml.root_element();
+        for place in path.split('/') {
+            let index = place.parse::<usize>().ok().and_then(|place| place.checked_sub(1));
+            let child = index.and_then(|index| node.children().filter(Node::is_element).nth(index));
+            match child {
+                Some(child) => node = child,
+                None => return Ok(None),
+            }
+        }
+        Ok(Some(node))
     }
 
     /// The node with this id. An id that stands twice is an error where it is asked for.
-    pub fn by_id(&self, id: &str, asked_at: Option<Position>) -> Result<Option<Node<'a, 'i>>, Error> {
+    pub fn by_id(&self, id: &str, asked_by: Option<Node>) -> Result<Option<Node<'a, 'i>>, Error> {
         let Some(first) = self.ids.get(id).and_then(|&node| self.xml.get_node(node)) else { return Ok(None) };
         if let Some(second) = self.twice.get(id).and_then(|&node| self.xml.get_node(node)) {
             let error = Error::new(
@@ -67,31 +132,18 @@ impl<'a, 'i> Resolver<'a, 'i> {
                 ),
                 "Give one of them another id (Object > Object Properties)",
             );
-            return Err(error.at(asked_at.unwrap_or_else(|| self.position(second))));
+            return Err(error.at(self.position(asked_by.unwrap_or(second))));
         }
         Ok(Some(first))
     }
 
     /// The target of a `<use>`, if it is inside this drawing.
     pub fn href(&self, node: Node) -> Result<Option<Node<'a, 'i>>, Error> {
-        let href = node.attribute("href").or_else(|| node.attribute((XLINK, "href")));
+        let href = node.plain("href").or_else(|| node.attribute((XLINK, "href")));
         match href.and_then(|href| href.trim().strip_prefix('#')) {
-            Some(id) => self.by_id(id, Some(self.position(node))),
+            Some(id) => self.by_id(id, Some(node)),
             None => Ok(None),
         }
-    }
-
-    /// The computed style of a node's parents, from the root down.
-    pub fn inherited_style(&self, node: Node) -> Style {
-        let mut style = Style::initial();
-        let mut chain: Vec<Node> = node.ancestors().skip(1).filter(Node::is_element).collect();
-        chain.reverse();
-        for ancestor in chain {
-            let units = Units { viewport: self.view.size(), em: style.font_size() };
-            style = self.cascade.computed(ancestor, &style, &units);
-        }
-        style.forget_opacity();
-        style
     }
 }
 
@@ -101,63 +153,74 @@ pub(crate) fn is_svg(node: &Node, name: &str) -> bool {
     tag.name() == name && tag.namespace().is_none_or(|namespace| namespace == SVG)
 }
 
-/// The id of a node, or its place from the root down where it has none.
-pub(crate) fn node_reference(node: Node) -> String {
-    if let Some(id) = node.attribute("id").filter(|id| !id.is_empty()) {
-        return id.to_owned();
+/// How references to objects without an id start.
+const NODE: &str = "node:";
+
+fn places(xml: &Document) -> Vec<u32> {
+    let mut places = Vec::new();
+    for node in xml.descendants() {
+        let before = node.prev_sibling().map_or(0, |before| places[before.id().get() as usize]);
+        places.resize(node.id().get() as usize + 1, 0);
+        places[node.id().get() as usize] = before + u32::from(node.is_element());
     }
-    let mut places: Vec<String> = node
-        .ancestors()
-        .filter(|ancestor| ancestor.parent_element().is_some())
-        .map(|ancestor| (1 + ancestor.prev_siblings().skip(1).filter(Node::is_element).count()).to_string())
-        .collect();
-    places.reverse();
-    format!("node:{}", places.join("/"))
+    places
 }
 
-/// The root's view box and the CSS pixels in one of its user units.
-fn root_view(root: Node) -> (Rect, f64) {
+/// True if the node itself has a role, by attribute or class.
+fn has_mark(node: Node) -> bool {
+    node.attribute((NAMESPACE, "role")).is_some()
+        || node.plain("class").is_some_and(|class| class.contains("rinceau-"))
+}
+
+/// Stops at the first ancestor that is marked already, so that all marks cost one pass.
+fn mark_upwards(marked: &mut [bool], node: Node) {
+    for node in node.ancestors() {
+        match marked.get_mut(node.id().get() as usize) {
+            Some(mark) if !*mark => *mark = true,
+            _ => return,
+        }
+    }
+}
+
+/// The root's view box and the CSS pixels in one of its user units. Sizes beyond `largest`,
+/// or so small that a unit of them is beyond it, count as not given.
+fn root_view(root: Node, largest: f64) -> (Rect, f64) {
     // Browsers' default size, for percentages of a drawing that states no size at all.
     const DEFAULT: Size = Size::new(300.0, 150.0);
-    let view = root
-        .attribute("viewBox")
-        .and_then(units::view_box)
-        .filter(|view| view.width() > 0.0 && view.height() > 0.0);
+    let usable = |side: f64| (1.0 / largest..=largest).contains(&side);
+    let view = root.plain("viewBox").and_then(units::view_box).filter(|view| {
+        usable(view.width())
+            && usable(view.height())
+            && [view.x0, view.y0].iter().all(|corner| corner.abs() <= largest)
+    });
     let base = Units { viewport: view.map_or(DEFAULT, |view| view.size()), em: 16.0 };
     let side = |name, axis| {
-        root.attribute(name)
+        root.plain(name)
             .filter(|text| !text.contains('%'))
             .and_then(|text| base.resolve(text, axis))
-            .filter(|side| side.is_finite() && *side > 0.0)
+            .filter(|&side| usable(side))
     };
     let (width, height) = (side("width", Axis::X), side("height", Axis::Y));
-    match view {
-        Some(view) => {
-            let scale = match (width, height) {
-                (Some(w), Some(h)) => (w / view.width()).min(h / view.height()),
-                (Some(w), None) => w / view.width(),
-                (None, Some(h)) => h / view.height(),
-                (None, None) => 1.0,
-            };
-            (view, scale)
-        }
-        None => (
-            Rect::from_origin_size(
-                (0.0, 0.0),
-                (width.unwrap_or(DEFAULT.width), height.unwrap_or(DEFAULT.height)),
-            ),
-            1.0,
-        ),
-    }
+    let Some(view) = view else {
+        let size = (width.unwrap_or(DEFAULT.width), height.unwrap_or(DEFAULT.height));
+        return (Rect::from_origin_size((0.0, 0.0), size), 1.0);
+    };
+    let scale = match (width, height) {
+        (Some(w), Some(h)) => (w / view.width()).min(h / view.height()),
+        (Some(w), None) => w / view.width(),
+        (None, Some(h)) => h / view.height(),
+        (None, None) => 1.0,
+    };
+    (view, scale)
 }
 
 /// A node's own transform: the attribute, else the CSS property, about its origin.
 pub(crate) fn own_transform(node: Node, units: &Units) -> Result<Affine, String> {
-    let Some(text) = node.attribute("transform").filter(|text| !text.trim().is_empty()) else {
+    let Some(text) = node.plain("transform").filter(|text| !text.trim().is_empty()) else {
         return Ok(css_transform(node).unwrap_or(Affine::IDENTITY));
     };
     let transform = units::transform(text).ok_or_else(|| "its transform cannot be read".to_owned())?;
-    let Some(origin) = node.attribute("transform-origin") else { return Ok(transform) };
+    let Some(origin) = node.plain("transform-origin") else { return Ok(transform) };
     let mut sides = origin.split_whitespace();
     let mut side = |axis| {
         sides
@@ -180,8 +243,8 @@ fn keyword(text: &str) -> Option<&'static str> {
 
 /// `style="transform:..."` where it is written like the attribute, with px and deg units.
 fn css_transform(node: Node) -> Option<Affine> {
-    let style = node.attribute("style").filter(|style| style.contains("transform"))?;
-    let declaration = simplecss::DeclarationTokenizer::from(style).find(|d| d.name == "transform")?;
+    let style = node.plain("style").filter(|style| style.contains("transform"))?;
+    let declaration = crate::css::declarations(style).find(|d| d.name == "transform")?;
     units::transform(&declaration.value.replace("px", "").replace("deg", ""))
 }
 
@@ -192,7 +255,7 @@ pub(crate) fn nested_viewport(
     units: &Units,
     size: (Option<f64>, Option<f64>),
 ) -> Option<(Affine, Size)> {
-    let side = |name, axis| node.attribute(name).and_then(|text| units.resolve(text, axis));
+    let side = |name, axis| node.plain(name).and_then(|text| units.resolve(text, axis));
     let is_symbol = node.tag_name().name() == "symbol";
     let width = size.0.or_else(|| side("width", Axis::X)).unwrap_or(units.viewport.width);
     let height = size.1.or_else(|| side("height", Axis::Y)).unwrap_or(units.viewport.height);
@@ -202,11 +265,11 @@ pub(crate) fn nested_viewport(
         (side("x", Axis::X).unwrap_or(0.0), side("y", Axis::Y).unwrap_or(0.0))
     };
     let place = Affine::translate((x, y));
-    let Some(view) = node.attribute("viewBox").and_then(units::view_box) else {
+    let Some(view) = node.plain("viewBox").and_then(units::view_box) else {
         return Some((place, Size::new(width, height)));
     };
     let aspect = node
-        .attribute("preserveAspectRatio")
+        .plain("preserveAspectRatio")
         .and_then(|text| svgtypes::AspectRatio::from_str(text).ok())
         .unwrap_or_default();
     let fit = units::view_box_transform(view, aspect, Size::new(width, height))?;

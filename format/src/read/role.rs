@@ -1,8 +1,9 @@
 //! Which role an object has: the attribute wins, the class stands in for it.
 
-use crate::error::Error;
 use super::resolver::Resolver;
+use crate::error::Error;
 use crate::vocabulary::{NAMESPACE, Role};
+use crate::xml::PlainAttribute;
 use roxmltree::Node;
 
 /// The role of a node, and a warning where attribute and class contradict.
@@ -10,7 +11,7 @@ use roxmltree::Node;
 /// Errors on an unknown `rinceau:role`: it would otherwise be silently ignored.
 pub(crate) fn role_of(resolver: &Resolver, node: Node) -> Result<Option<(Role, Option<String>)>, Error> {
     let class = node
-        .attribute("class")
+        .plain("class")
         .filter(|class| class.contains("rinceau-"))
         .and_then(|class| class.split_whitespace().find_map(Role::from_class));
     let Some(name) = node.attribute((NAMESPACE, "role")) else {
@@ -26,10 +27,9 @@ pub(crate) fn role_of(resolver: &Resolver, node: Node) -> Result<Option<(Role, O
         .at(resolver.position(node)));
     };
     let warning = class.filter(|&class| class != role).map(|class| {
-        let text = resolver.xml.input_text();
         let at = |name: &dyn Fn(&roxmltree::Attribute) -> bool| {
             let start = node.attributes().find(|a| name(a)).map_or(node.range().start, |a| a.range().start);
-            crate::error::Position::of(text, start)
+            resolver.position_at(start)
         };
         let role_at = at(&|a| a.namespace() == Some(NAMESPACE) && a.name() == "role");
         let class_at = at(&|a| a.namespace().is_none() && a.name() == "class");

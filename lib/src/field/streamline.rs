@@ -72,7 +72,7 @@ pub struct Streamline {
 pub struct Tracer<'a> {
     region: &'a Region,
     field: &'a DirectionField,
-    params: &'a StreamlineParams,
+    params: StreamlineParams,
     taken: PointGrid,
     lines: Vec<Streamline>,
     seeds: BinaryHeap<Seed>,
@@ -89,7 +89,7 @@ impl<'a> Tracer<'a> {
     pub fn new(
         region: &'a Region,
         field: &'a DirectionField,
-        params: &'a StreamlineParams,
+        params: StreamlineParams,
         rng: Rng,
         most_steps: usize,
     ) -> Self {
@@ -108,7 +108,7 @@ impl<'a> Tracer<'a> {
 
     /// Adds a place where a line may start; `distance` is that from boundary and guides.
     pub fn seed(&mut self, at: Point, distance: f64) {
-        let tie = self.rng.next();
+        let tie = self.rng.bits();
         // Non-negative floats order as their bits do.
         self.seeds.push(Seed(Reverse((distance.max(0.0).to_bits(), tie)), [at.x.to_bits(), at.y.to_bits()]));
     }
@@ -143,13 +143,22 @@ impl<'a> Tracer<'a> {
         true
     }
 
+    /// Allows lines of a share of the shortest length from now on.
+    pub fn shorten(&mut self, share: f64) {
+        self.params.min_length *= share;
+    }
+
     /// The lines so far.
     pub fn into_lines(self) -> Vec<Streamline> {
         self.lines
     }
 
     fn free(&self, p: Point) -> bool {
-        self.region.contains(p) && !self.taken.any_within(p, self.params.stop(), |_, _| true)
+        // A free line this near to the boundary would carry a sliver; where it should run
+        // into a tip, it is extended there later.
+        const BOUNDARY: f64 = 0.3;
+        let edge = BOUNDARY * self.params.spacing;
+        self.region.contains(p) && self.region.distance(p, edge) >= edge && !self.taken.any_within(p, self.params.stop(), |_, _| true)
     }
 
     /// Grows a line at both ends in turn (erratum Q-7) until both have stopped.
@@ -293,7 +302,7 @@ mod tests {
         let guides = [vec![Point::new(10.0, 190.0), Point::new(150.0, 20.0), Point::new(290.0, 190.0)]];
         let field = DirectionField::new(&region, &guides, 4.0).unwrap();
         let params = StreamlineParams { spacing: 20.0, min_length: 30.0, max_length: 90.0, end_gap: 2.0 };
-        let mut tracer = Tracer::new(&region, &field, &params, Rng::new(1), 1_000_000);
+        let mut tracer = Tracer::new(&region, &field, params.clone(), Rng::new(1), 1_000_000);
         for i in 0..30 {
             tracer.seed(Point::new(10.0 * f64::from(i), 100.0), 0.0);
         }

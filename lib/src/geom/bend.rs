@@ -50,6 +50,15 @@ impl Bend {
         self.map(Point::new(u, v)).p
     }
 
+    /// How far from the spine (u, v) goes, signed.
+    pub fn reach(&self, u: f64, v: f64) -> f64 {
+        let (a, b) = (self.width.0.value(u), self.width.1.value(u));
+        let root = (v * v + self.blend * self.blend).sqrt().max(f64::MIN_POSITIVE);
+        let w = v * (f64::midpoint(a, b) + (a - b) / 2.0 * v / root);
+        let k = if w > 0.0 { self.curvature.0.value(u) } else { self.curvature.1.value(u) };
+        w / (1.0 + k * k * w * w).sqrt()
+    }
+
     fn map(&self, at: Point) -> Mapped {
         let (u, v) = (at.x, at.y);
         let jet = self.spine.jet(u);
@@ -169,6 +178,7 @@ mod tests {
             let (h, at) = (1e-6, bend.map(Point::new(u, v)));
             let du = (bend.point(u + h, v) - bend.point(u - h, v)) / (2.0 * h);
             let dv = (bend.point(u, v + h) - bend.point(u, v - h)) / (2.0 * h);
+            prop_assert!((bend.point(u, v).distance(bend.spine.jet(u).p) - bend.reach(u, v).abs()).abs() < 1e-9);
             prop_assert!((du - at.du).hypot() < 1e-3 * (1.0 + du.hypot()), "{du:?} {:?}", at.du);
             prop_assert!((dv - at.dv).hypot() < 1e-4 * (1.0 + dv.hypot()));
         }

@@ -77,6 +77,11 @@ pub fn signed_area(contour: &[Point]) -> f64 {
     twice / 2.0
 }
 
+/// True for an outer contour among the results of this module, false for a hole.
+pub fn is_outer(contour: &Contour) -> bool {
+    signed_area(contour) > 0.0
+}
+
 /// Area of simple contours: outer ones and holes run opposite ways.
 pub fn area(contours: &[Contour]) -> f64 {
     contours.iter().map(|contour| signed_area(contour)).sum::<f64>().abs()
@@ -116,6 +121,14 @@ mod tests {
         let ring = [square(0.0, 0.0, 10.0), square(2.0, 2.0, 6.0)];
         assert!((area(&simplified(&ring, true)) - 64.0).abs() < 1e-6);
         assert!((area(&simplified(&ring, false)) - 100.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn outer_contours_and_holes_are_told_apart() {
+        let ring = simplified(&[square(0.0, 0.0, 10.0), square(2.0, 2.0, 6.0)], true);
+        let outer: Vec<f64> = ring.iter().filter(|c| is_outer(c)).map(|c| signed_area(c)).collect();
+        assert_eq!(outer.len(), 1);
+        assert!((outer[0] - 100.0).abs() < 1e-6);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 pub mod bend;
 pub mod boolean;
+pub mod distance;
 pub mod flatten;
 pub mod near;
 pub mod polyline;

@@ -33,6 +33,22 @@ impl Cells {
         self.row(p.y) * self.columns + self.column(p.x)
     }
 
+    /// Visits the cells at a distance of `ring` cells, those that exist.
+    fn ring(&self, column: i64, row: i64, ring: i64, mut visit: impl FnMut(usize)) {
+        let (columns, rows) = (self.columns as i64, self.rows as i64);
+        for r in (row - ring).max(0)..=(row + ring).min(rows - 1) {
+            let whole = (r - row).abs() == ring;
+            let step = if whole { 1 } else { (2 * ring).max(1) };
+            let mut c = column - ring;
+            while c <= column + ring {
+                if (0..columns).contains(&c) {
+                    visit((r * columns + c) as usize);
+                }
+                c += step;
+            }
+        }
+    }
+
     /// Indices of the cells a box touches, row by row.
     fn covered(&self, low: Point, high: Point) -> impl Iterator<Item = usize> + use<> {
         let (c0, c1) = (self.column(low.x), self.column(high.x));
@@ -139,19 +155,25 @@ impl SegmentGrid {
 
     /// Distance to the nearest segment, or `reach` if none is nearer.
     pub fn distance(&self, at: Point, reach: f64) -> f64 {
-        let mut best = reach;
-        // Growing squares: most queries end in the first.
-        let mut radius = self.cells.size.min(reach);
-        loop {
-            self.visit(at, at, radius, |p, q, _| {
-                best = best.min(point_segment(at, p, q));
-                true
-            });
-            if best <= radius || radius >= reach {
-                return best;
+        let (column, row) = (self.cells.column(at.x) as i64, self.cells.row(at.y) as i64);
+        let all = self.cells.columns.max(self.cells.rows) as i64;
+        let rings = ((reach / self.cells.size).min(1e9) as i64 + 1).min(all);
+        let mut best = reach * reach;
+        for ring in 0..=rings {
+            // What lies in this ring of cells is at least this far away, also from a place
+            // outside the grid, whose ring is that of the border cell next to it.
+            let nearest = (ring - 1) as f64 * self.cells.size;
+            if ring > 1 && nearest * nearest >= best {
+                break;
             }
-            radius = (radius * 2.0).min(reach);
+            self.cells.ring(column, row, ring, |index| {
+                for &id in &self.content[index] {
+                    let (p, q, _) = self.segments[id as usize];
+                    best = best.min(point_segment_squared(at, p, q));
+                }
+            });
         }
+        best.sqrt()
     }
 
     /// How far a ray from `at` along the unit vector `along` runs before it meets a segment,
@@ -180,10 +202,19 @@ impl SegmentGrid {
 
 /// Distance from a point to a segment.
 pub fn point_segment(at: Point, p: Point, q: Point) -> f64 {
-    let d = q - p;
-    let squared = d.hypot2();
-    let t = if squared > 0.0 { ((at - p).dot(d) / squared).clamp(0.0, 1.0) } else { 0.0 };
-    at.distance(p + t * d)
+    point_segment_squared(at, p, q).sqrt()
+}
+
+fn point_segment_squared(at: Point, p: Point, q: Point) -> f64 {
+    let (d, w) = (q - p, at - p);
+    let (along, squared) = (w.dot(d), d.hypot2());
+    if along <= 0.0 {
+        w.hypot2()
+    } else if along >= squared {
+        at.distance_squared(q)
+    } else {
+        (w - (along / squared) * d).hypot2()
+    }
 }
 
 /// Distance between two segments; 0 if they cross.
@@ -235,6 +266,9 @@ mod tests {
             let at = point();
             let brute = segments.iter().map(|&(p, q)| point_segment(at, p, q)).fold(50.0, f64::min);
             assert!((grid.distance(at, 50.0) - brute).abs() < 1e-12);
+            let outside = at + Vec2::new(-30.0, 95.0);
+            let brute = segments.iter().map(|&(p, q)| point_segment(outside, p, q)).fold(70.0, f64::min);
+            assert!((grid.distance(outside, 70.0) - brute).abs() < 1e-12);
             let angle = f64::from(i);
             let along = Vec2::new(libm::cos(angle), libm::sin(angle));
             let brute =

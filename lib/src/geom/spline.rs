@@ -95,6 +95,39 @@ impl Profile {
         Profile::envelope(bounds, spans, f64::INFINITY, f64::min)
     }
 
+    /// A smooth function that follows the bounds from below, closer than [`Profile::below`],
+    /// and nowhere above them at the middles of the bins:
+    /// each coefficient starts from the bounds around its own place, and where the curve
+    /// then lies above a bound, the coefficients there are lowered.
+    pub fn under(bounds: &[f64], spans: usize) -> Self {
+        const PASSES: usize = 3;
+        let bins = bounds.len();
+        let place = |j: usize| (j as f64 - 1.0) / spans as f64 * bins as f64;
+        let around = |j: usize, reach: f64| {
+            let reach = reach * bins as f64 / spans as f64;
+            let from = ((place(j) - reach).max(0.0) as usize).min(bins - 1);
+            let to = ((place(j) + reach).ceil().max(0.0) as usize).clamp(from + 1, bins);
+            from..to
+        };
+        let least = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut profile =
+            Profile { coefficients: (0..spans + 3).map(|j| least(&bounds[around(j, 0.6)])).collect() };
+        for pass in 0..PASSES {
+            // The curve is smooth on the scale of a bin, so its middle tells.
+            let over: Vec<f64> = (0..bins)
+                .map(|i| bounds[i] / profile.value((i as f64 + 0.5) / bins as f64).max(f64::MIN_POSITIVE))
+                .collect();
+            if pass + 1 == PASSES {
+                let all = least(&over).min(1.0);
+                return profile.scaled(all);
+            }
+            for (j, c) in profile.coefficients.iter_mut().enumerate() {
+                *c *= least(&over[around(j, 1.0)]).min(1.0);
+            }
+        }
+        profile
+    }
+
     /// A smooth function nowhere below the bounds.
     pub fn above(bounds: &[f64], spans: usize) -> Self {
         Profile::envelope(bounds, spans, f64::NEG_INFINITY, f64::max)
@@ -124,6 +157,18 @@ impl Profile {
         Profile { coefficients: self.coefficients.iter().map(|c| c * factor).collect() }
     }
 
+    /// Value; constant beyond the ends.
+    pub fn value(&self, u: f64) -> f64 {
+        let (span, t) = locate(u.clamp(0.0, 1.0), self.coefficients.len() - 3);
+        let m = 1.0 - t;
+        let c = &self.coefficients[span..span + 4];
+        // De Boor's algorithm, uniform: three rounds of linear interpolation.
+        let (a, b) = ((m * c[0] + (2.0 + t) * c[1]) / 3.0, ((1.0 + m) * c[1] + (1.0 + t) * c[2]) / 3.0);
+        let d = ((2.0 + m) * c[2] + t * c[3]) / 3.0;
+        let (e, f) = ((m * a + (1.0 + t) * b) / 2.0, ((1.0 + m) * b + t * d) / 2.0);
+        m * e + t * f
+    }
+
     /// Value and derivative by `u`; constant beyond the ends.
     pub fn jet(&self, u: f64) -> (f64, f64) {
         let spans = self.coefficients.len() - 3;
@@ -145,10 +190,14 @@ mod tests {
         #[test]
         fn profiles_keep_their_bounds(bounds in prop::collection::vec(0.1..10.0f64, 20..120), spans in 1usize..16) {
             let (below, above) = (Profile::below(&bounds, spans), Profile::above(&bounds, spans));
+            let under = Profile::under(&bounds, spans);
             for i in 0..=1000 {
                 let u = f64::from(i) / 1000.0;
                 let bin = ((u * bounds.len() as f64) as usize).min(bounds.len() - 1);
                 prop_assert!(below.jet(u).0 <= bounds[bin] + 1e-9);
+                let middle = (bin as f64 + 0.5) / bounds.len() as f64;
+                prop_assert!((under.value(u) - under.jet(u).0).abs() < 1e-9);
+                prop_assert!(under.jet(middle).0 <= bounds[bin] + 1e-9);
                 prop_assert!(above.jet(u).0 >= bounds[bin] - 1e-9);
             }
         }

@@ -12,8 +12,9 @@
 //! is built, and the cost is linear in stations times neighbours.
 
 use super::prepare::Field;
-use super::template::BINS;
+use super::template::{BINS, Template};
 use crate::field::{BOUNDARY_BONUS, DirectionField, LineKind, Streamline};
+use crate::geom::bend::Bend;
 use crate::geom::near::PointGrid;
 use crate::geom::polyline::{self, left_of};
 use crate::geom::spline::{Curve, Profile};
@@ -39,40 +40,53 @@ pub(super) struct Blob {
     pub room: [Vec<f64>; 2],
 }
 
-impl Blob {
-    /// The smooth spine of the part between two shares of the length, and its curvature
-    /// bounds on both sides.
-    pub fn spine(&self, from: f64, to: f64, spacing: f64) -> (Curve, [Profile; 2], [Vec<f64>; 2]) {
-        let part = polyline::between(&self.points, from * self.length, to * self.length);
-        spine(&part, spacing)
-    }
+/// A smooth curve along a line, and how it bends.
+#[derive(Clone, Debug)]
+pub(super) struct Spine {
+    pub curve: Curve,
+    /// Smooth bounds of the curvature to the left and the right.
+    bounds: [Profile; 2],
+    /// Their largest values in each bin.
+    pub curvature: [Vec<f64>; 2],
 }
 
-/// A smooth curve along a polyline. Its knots are about 0.4 spacings apart: closer ones would
-/// copy the jitter of the tracing, wider ones would cut its bends.
-fn spine(points: &[Point], spacing: f64) -> (Curve, [Profile; 2], [Vec<f64>; 2]) {
-    let length = polyline::length(points);
-    let spans = ((length / (0.4 * spacing)).ceil() as usize).clamp(4, 400);
-    let curve = Curve::near(&polyline::resample(points, spans));
-    let mut bins = [vec![0.0; BINS], vec![0.0; BINS]];
-    for (i, station) in stations(&curve).iter().enumerate() {
-        for bin in [i.saturating_sub(1), i.min(BINS - 1)] {
-            bins[0][bin] = f64::max(bins[0][bin], station.curvature);
-            bins[1][bin] = f64::max(bins[1][bin], -station.curvature);
+impl Spine {
+    /// Knots are about 0.4 spacings apart: closer ones would copy the jitter of the tracing,
+    /// wider ones would cut its bends.
+    pub fn new(points: &[Point], spacing: f64) -> Self {
+        let length = polyline::length(points);
+        let spans = ((length / (0.4 * spacing)).ceil() as usize).clamp(4, 400);
+        let curve = Curve::near(&polyline::resample(points, spans));
+        let mut curvature = [vec![0.0; BINS], vec![0.0; BINS]];
+        for (i, station) in stations(&curve).iter().enumerate() {
+            for bin in [i.saturating_sub(1), i.min(BINS - 1)] {
+                curvature[0][bin] = f64::max(curvature[0][bin], station.curvature);
+                curvature[1][bin] = f64::max(curvature[1][bin], -station.curvature);
+            }
+        }
+        let spans = ((length / (0.8 * spacing)).ceil() as usize).clamp(3, 40);
+        let bounds = [Profile::above(&curvature[0], spans), Profile::above(&curvature[1], spans)];
+        // What the smooth bounds are in each bin, which is what widths have to reckon with.
+        for (bins, bound) in curvature.iter_mut().zip(&bounds) {
+            let nodes: Vec<f64> = (0..=BINS).map(|i| bound.value(i as f64 / BINS as f64)).collect();
+            for (k, pair) in bins.iter_mut().zip(nodes.windows(2)) {
+                *k = pair[0].max(pair[1]);
+            }
+        }
+        Spine { curve, bounds, curvature }
+    }
+
+    /// The strip around the spine for a template of these widths.
+    pub fn bend(self, width: [Profile; 2], template: &Template) -> Bend {
+        // Over a fifth of its half width an element's one side turns into its other.
+        const BLEND: f64 = 0.2;
+        Bend {
+            spine: self.curve,
+            width: width.into(),
+            curvature: self.bounds.into(),
+            blend: BLEND * template.half_width,
         }
     }
-    let spans = ((length / (0.8 * spacing)).ceil() as usize).clamp(3, 40);
-    let bounds = [Profile::above(&bins[0], spans), Profile::above(&bins[1], spans)];
-    // What the smooth bounds are in each bin, which is what widths have to reckon with.
-    for (bins, bound) in bins.iter_mut().zip(&bounds) {
-        for (i, k) in bins.iter_mut().enumerate() {
-            *k = [0.0, 0.5, 1.0]
-                .map(|f| bound.jet((i as f64 + f) / BINS as f64).0)
-                .into_iter()
-                .fold(0.0, f64::max);
-        }
-    }
-    (curve, bounds, bins)
 }
 
 /// A place on a spine.
@@ -121,7 +135,7 @@ pub(super) fn blobs(index: usize, field: &Field, flow: &DirectionField, lines: V
         .enumerate()
         .map(|(owner, (points, kind))| {
             let length = polyline::length(points);
-            let (curve, ..) = spine(points, spacing);
+            let curve = Spine::new(points, spacing).curve;
             let ribs: Vec<[f64; 2]> = stations(&curve)
                 .iter()
                 .enumerate()

@@ -14,7 +14,7 @@ use crate::geom::bend::width_before;
 use crate::geom::spline::Profile;
 
 /// Spans of a width profile along an element.
-const SPANS: usize = 10;
+const SPANS: usize = 5;
 /// The wider side is at most this many times as wide as the other, in template widths.
 const MOST_UNEQUAL: f64 = 2.2;
 /// Width may be stretched against length by at most this factor, and squeezed by at most its
@@ -37,9 +37,6 @@ pub(super) struct Pose {
 #[derive(Clone, Debug)]
 pub(super) struct Fit {
     pub pose: Pose,
-    /// Part of the blob's length that is used.
-    pub from: f64,
-    pub to: f64,
     /// Scale from template widths to user units, for v > 0 and v < 0.
     pub width: [Profile; 2],
     /// Area of the envelope.
@@ -49,7 +46,7 @@ pub(super) struct Fit {
 }
 
 /// Extents of a posed template on a side of the blob.
-fn extent(template: &Template, pose: Pose, side: usize, bin: usize) -> f64 {
+pub(super) fn extent(template: &Template, pose: Pose, side: usize, bin: usize) -> f64 {
     let side = if pose.across { 1 - side } else { side };
     let bin = if pose.along { BINS - 1 - bin } else { bin };
     template.extents[side][bin]
@@ -77,24 +74,35 @@ pub(super) fn poses(templates: &[Template], usable: &[usize], blob: &Blob) -> Ve
     poses
 }
 
-/// The widest smooth fit of a pose into a part of a blob. `None` if it would be a thread.
-/// `curvature` is that of the part, by bins.
-pub(super) fn fit(
+/// What limits the width of a pose in a part of a blob.
+struct Limits {
+    /// Greatest scale of the template's width in each bin of each side.
+    scale: [[f64; BINS]; 2],
+    /// Scale along the spine.
+    along: f64,
+    /// Length of a bin in user units.
+    bin: f64,
+}
+
+/// Measures the limits. `None` if the element would be a thread. `curvature` is that of the
+/// part, by bins.
+fn limits(
     template: &Template,
     pose: Pose,
     blob: &Blob,
     (from, to): (f64, f64),
     curvature: Option<&[Vec<f64>; 2]>,
-    params: &Params,
-) -> Option<Fit> {
-    let along_scale = (to - from) * blob.length / template.length;
+    stretch: f64,
+) -> Option<Limits> {
+    let length = (to - from) * blob.length;
+    let along = length / template.length;
     // Extents below this share of the widest do not limit the width: a tip has no width.
     const TIP: f64 = 0.03;
-    let tip = TIP * template.half_width();
-    let mut bounds = [vec![f64::INFINITY; BINS], vec![f64::INFINITY; BINS]];
-    let mut least = f64::INFINITY;
-    for (side, bounds) in bounds.iter_mut().enumerate() {
-        for (i, bound) in bounds.iter_mut().enumerate() {
+    let tip = TIP * template.half_width;
+    let mut scale = [[f64::INFINITY; BINS]; 2];
+    let mut least = MOST_ASPECT * along;
+    for (side, scale) in scale.iter_mut().enumerate() {
+        for (i, scale) in scale.iter_mut().enumerate() {
             let extent = extent(template, pose, side, i);
             if extent <= tip {
                 continue;
@@ -103,68 +111,113 @@ pub(super) fn fit(
             // Pulling in on the inner side of a bend makes room for more width before it.
             const MOST_BEFORE: f64 = 4.0;
             let k = curvature.map_or(0.0, |k| k[side][i]);
-            *bound = width_before(room, k, MOST_BEFORE) / extent;
-            least = least.min(*bound);
+            *scale = width_before(room, k, MOST_BEFORE) / extent;
+            least = least.min(*scale);
         }
     }
-    let least = least.min(MOST_ASPECT * along_scale);
-    if !(least > SQUEEZE * along_scale) {
+    if least.is_nan() || least <= SQUEEZE * along {
         return None;
     }
-    let most = (least * params.stretch).min(MOST_ASPECT * along_scale);
-    for bound in bounds.iter_mut().flatten() {
-        *bound = bound.min(most);
+    for scale in &mut scale {
+        for (i, scale) in scale.iter_mut().enumerate() {
+            // Less freedom towards the ends: a tip that swells is a tip no more.
+            let x = 2.0 * (i as f64 + 0.5) / BINS as f64 - 1.0;
+            let freedom = 1.0 + (stretch - 1.0) * (1.0 - x * x);
+            *scale = scale.min(least * freedom).min(MOST_ASPECT * along);
+        }
     }
+    Some(Limits { scale, along, bin: length / BINS as f64 })
+}
+
+/// What a pose would fill, for comparison: its area and its distortion.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Trial {
+    pub pose: Pose,
+    /// Area of the envelope.
+    pub area: f64,
+    /// Natural logarithm of how much wider than in proportion the element would be.
+    pub distortion: f64,
+}
+
+/// Tries a pose in a part of a blob without shaping its widths.
+pub(super) fn trial(
+    template: &Template,
+    pose: Pose,
+    blob: &Blob,
+    part: (f64, f64),
+    params: &Params,
+) -> Option<Trial> {
+    let limits = limits(template, pose, blob, part, None, params.stretch)?;
+    let (mut weight, mut scaled) = (0.0, 0.0);
+    for (side, scale) in limits.scale.iter().enumerate() {
+        for (i, scale) in scale.iter().enumerate() {
+            let extent = extent(template, pose, side, i);
+            weight += extent;
+            scaled += scale * extent;
+        }
+    }
+    let distortion = libm::log(scaled / weight.max(f64::MIN_POSITIVE) / limits.along);
+    Some(Trial { pose, area: scaled * limits.bin, distortion })
+}
+
+/// The widest smooth fit of a pose into a part of a blob. `None` if it would be a thread.
+pub(super) fn fit(
+    template: &Template,
+    pose: Pose,
+    blob: &Blob,
+    part: (f64, f64),
+    curvature: &[Vec<f64>; 2],
+    params: &Params,
+) -> Option<Fit> {
+    let limits = limits(template, pose, blob, part, Some(curvature), params.stretch)?;
     let spans = if params.stretch > 1.0 { SPANS } else { 1 };
-    let [left, right] = bounds.map(|bounds| Profile::below(&bounds, spans));
+    let [left, right] = limits.scale.each_ref().map(|bounds| Profile::under(bounds, spans));
     let capped = |a: &Profile, b: &Profile| a.zip(b, |a, b| a.min(MOST_UNEQUAL * b));
     let width = [capped(&left, &right), capped(&right, &left)];
-
-    let bin_length = (to - from) * blob.length / BINS as f64;
-    let (mut area, mut weight, mut scale) = (0.0, 0.0, 0.0);
+    let (mut area, mut weight, mut scaled) = (0.0, 0.0, 0.0);
     for i in 0..BINS {
         let u = (i as f64 + 0.5) / BINS as f64;
         for (side, width) in width.iter().enumerate() {
             let extent = extent(template, pose, side, i);
-            let s = width.jet(u).0;
+            let s = width.value(u);
             // The share of the room is what counts, so widths are measured after pulling in.
-            area += (s * extent).min(blob.room[side][blob_bin(i, from, to)]) * bin_length;
+            area += (s * extent).min(blob.room[side][blob_bin(i, part.0, part.1)]) * limits.bin;
             weight += extent;
-            scale += s * extent;
+            scaled += s * extent;
         }
     }
-    Some(Fit {
-        pose,
-        from,
-        to,
-        width,
-        area,
-        distortion: libm::log(scale / weight.max(f64::MIN_POSITIVE) / along_scale),
-    })
+    let distortion = libm::log(scaled / weight.max(f64::MIN_POSITIVE) / limits.along);
+    Some(Fit { pose, width, area, distortion })
 }
 
-fn blob_bin(i: usize, from: f64, to: f64) -> usize {
+pub(super) fn blob_bin(i: usize, from: f64, to: f64) -> usize {
     let u = from + (to - from) * (i as f64 + 0.5) / BINS as f64;
     ((u * BINS as f64) as usize).min(BINS - 1)
 }
 
-/// A fit with less cut off at the ends wins unless a pinch there makes the whole thin: tries
-/// some cuts and keeps the largest area.
-pub(super) fn trimmed(template: &Template, first: Fit, blob: &Blob, min_length: f64, params: &Params) -> Fit {
+/// Cutting off an end may free the rest of a pinch there that made the whole thin: tries some
+/// cuts and returns the part of the blob with the largest area.
+pub(super) fn trimmed(
+    template: &Template,
+    first: Trial,
+    blob: &Blob,
+    min_length: f64,
+    params: &Params,
+) -> (f64, f64) {
     const CUTS: [f64; 4] = [0.0, 0.08, 0.18, 0.3];
     // Length given up must pay: it is a gap in the flow as well.
     const WORTH: f64 = 1.06;
-    let mut best = first;
+    let (mut best, mut area) = ((0.0, 1.0), first.area);
     for from in CUTS {
         for cut in CUTS {
             let part = (from, 1.0 - cut);
             if (part.1 - part.0) * blob.length < min_length.min(0.7 * blob.length) {
                 continue;
             }
-            if let Some(fit) = fit(template, best.pose, blob, part, None, params)
-                && fit.area > WORTH * best.area
+            if let Some(trial) = trial(template, first.pose, blob, part, params)
+                && trial.area > WORTH * area
             {
-                best = fit;
+                (best, area) = (part, trial.area);
             }
         }
     }

@@ -20,7 +20,7 @@ pub(super) fn trace(
     flow: &DirectionField,
     half_elements: bool,
     rng: &mut Rng,
-    go_on: impl FnMut(f64) -> bool,
+    mut go_on: impl FnMut(f64) -> bool,
 ) -> (Vec<Streamline>, bool) {
     let sizes = &field.sizes;
     let params = StreamlineParams {
@@ -29,7 +29,7 @@ pub(super) fn trace(
         max_length: sizes.max_length,
         end_gap: END_GAP * sizes.gap,
     };
-    let mut tracer = Tracer::new(&field.region, flow, &params, rng.fork(), MOST_STEPS);
+    let mut tracer = Tracer::new(&field.region, flow, params, rng.fork(), MOST_STEPS);
     for spine in &field.fixed_spines {
         tracer.add(spine, LineKind::Fixed);
     }
@@ -44,8 +44,30 @@ pub(super) fn trace(
             tracer.seed(p, 0.0);
         }
     }
-    let finished = tracer.run(go_on);
+    let finished = tracer.run(&mut go_on) && {
+        // What is left is too short for s_min. Shorter lines there beat bald spots.
+        const SHORTER: f64 = 0.62;
+        tracer.shorten(SHORTER);
+        sow_rest(field, &mut tracer);
+        tracer.run(&mut go_on)
+    };
     (tracer.into_lines(), finished)
+}
+
+/// Seeds all over the region, a third of a spacing apart; those far from the boundary first.
+fn sow_rest(field: &Field, tracer: &mut Tracer) {
+    let bounds = field.region.bounds();
+    let step = field.sizes.spacing / 3.0;
+    let reach = 4.0 * field.sizes.spacing;
+    let (columns, rows) = ((bounds.width() / step) as usize, (bounds.height() / step) as usize);
+    for row in 0..=rows {
+        for column in 0..=columns {
+            let p = bounds.origin() + Vec2::new(column as f64 + 0.5, row as f64 + 0.5) * step;
+            if field.region.contains(p) {
+                tracer.seed(p, reach - field.region.distance(p, reach));
+            }
+        }
+    }
 }
 
 /// Lines along the boundary where the flow runs along it and there is room for a half element
@@ -83,7 +105,10 @@ fn boundary(
             let room = field.region.ray(p + 1e-3 * step * inward, inward, reach);
             let thick = room >= (1.5 + BOUNDARY_BONUS) * spacing;
             if !(half_elements && thick) {
-                tracer.seed(p + (room / 2.0).min(spacing / 2.0) * inward, 0.0);
+                // Where it is thin the roomiest place comes first, so that a line into a tip
+            // starts in the middle of its root and not beside its point.
+            let middle = (room / 2.0).min(spacing / 2.0);
+            tracer.seed(p + middle * inward, spacing / 2.0 - middle);
             }
             half_elements && thick && is_aligned(flow, p, tangent) && !is_corner(&points, i)
         })

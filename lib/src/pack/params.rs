@@ -38,22 +38,29 @@ crate::params! {
         min_gap: Length = "min-gap", "Gap", Basic, Kind::Length, "0";
         #[doc = "Colours of the built-in elements. Elements that you drew keep their own"]
         palette: String = "palette", "Colours", Basic, Kind::Choice(PALETTES), "auto";
-        #[doc = "Longest element. 0 chooses five element widths"]
+        #[doc = "Longest element. 0 chooses four element widths"]
         max_length: Length = "max-length", "Longest element", More, Kind::Length, "0";
-        #[doc = "Shortest element; where only a shorter one would fit, the space stays empty. 0 chooses 1.8 element widths"]
+        #[doc = "Shortest element; where only a shorter one would fit, the space stays empty. 0 chooses 1.5 element widths"]
         min_length: Length = "min-length", "Shortest element", More, Kind::Length, "0";
         #[doc = "Empty distance kept from the outline of the shape. 0 chooses half the gap"]
         edge: Length = "edge", "Distance from outline", More, Kind::Length, "0";
+        #[doc = "What goes into the gaps that are left: small dots, or nothing"]
+        fillers: String = "fillers", "Fill gaps with", Basic, Kind::Choice(&[("dots", "Dots"), ("none", "Nothing")]), "dots";
         #[doc = "How freely an element's width may swell and shrink along its length to fill the space it has: 1 keeps its proportions, 3 is very free"]
-        stretch: f64 = "stretch", "Swelling", More, Kind::Number { min: 1.0, max: 3.0 }, "1.9";
+        stretch: f64 = "stretch", "Swelling", More, Kind::Number { min: 1.0, max: 3.0 }, "1.6";
         #[doc = "How hard equal neighbours are avoided: 0 takes whatever fits best, 1 mixes as much as it can"]
         variety: f64 = "variety", "Variety", More, Kind::Number { min: 0.0, max: 1.0 }, "0.5";
         #[doc = "Which way elements point: with the arrows of the guides, or either way, whatever fits best"]
         sense: String = "sense", "Pointing", More, Kind::Choice(&[("arrow", "With the arrows"), ("any", "Either way")]), "arrow";
+        #[doc = "How often the composition is refined: elements move apart, turn and grow into the gaps. 0 leaves them as first placed"]
+        iterations: usize = "iterations", "Refinements", More, Kind::Whole { min: 0, max: 200 }, "15";
         #[doc = "Whether half elements line the outline where the flow runs along it"]
         border: bool = "border", "Line the outline with half elements", More, Kind::Switch, "true";
     }
 }
+
+/// Curves are true to this share of the element width: a tenth of a millimetre on a poster.
+const TOLERANCE: f64 = 1.0 / 400.0;
 
 /// The lengths of one run in user units, all derived.
 #[derive(Clone, Debug)]
@@ -66,19 +73,31 @@ pub(super) struct Sizes {
 }
 
 impl Sizes {
+    /// How far bent curves, and the chords that stand for them, may be from the truth.
+    pub fn tolerance(&self) -> f64 {
+        TOLERANCE * self.spacing
+    }
+
+    /// The gap between chords that guarantees the gap between what they stand for, also after
+    /// rounding to the written decimals.
+    pub fn safe_gap(&self) -> f64 {
+        const ROUNDING: f64 = 1e-3;
+        self.gap * (1.0 + ROUNDING) + 2.0 * self.tolerance()
+    }
+
     /// `area` is that of everything to be filled.
     pub fn new(params: &Params, area: f64, px_per_unit: f64) -> Self {
         /// About this many elements fill the shapes when no width is given.
-        const ELEMENTS: f64 = 64.0;
+        const ELEMENTS: f64 = 60.0;
         let or = |length: Length, default: f64| {
             let length = length.to_user(px_per_unit);
             if length > 0.0 { length } else { default }
         };
         // An average element is this many times longer than its share of the width.
-        const ASPECT: f64 = 3.4;
+        const ASPECT: f64 = 2.9;
         let spacing = or(params.spacing, (area / (ELEMENTS * ASPECT)).sqrt());
-        let max_length = or(params.max_length, 5.0 * spacing);
-        let min_length = or(params.min_length, 1.8 * spacing).min(max_length);
+        let max_length = or(params.max_length, 4.0 * spacing);
+        let min_length = or(params.min_length, 1.5 * spacing).min(max_length);
         let gap = or(params.min_gap, spacing / 8.0);
         Sizes { spacing, min_length, max_length, gap, edge: or(params.edge, gap / 2.0) }
     }

@@ -5,14 +5,16 @@
 //! placed before, not crossing itself. What fails is made narrower, then shorter, and at last
 //! left out; nothing that fails is drawn.
 
-use super::blob::Blob;
-use super::choose::{Fit, fit};
-use super::params::Params;
-use super::prepare::{Field, self_crossing};
+use super::blob::Spine;
+use super::choose::{Pose, fit};
+use super::params::Sizes;
+use super::prepare::{Field, Prepared, self_crossing};
+use super::refine::Body;
 use super::template::Template;
 use crate::geom::bend::Bend;
-use crate::geom::boolean::Contour;
+use crate::geom::boolean::{Contour, area, is_outer, simplified};
 use crate::geom::flatten::flatten;
+use crate::geom::polyline;
 use crate::geom::near::{SegmentGrid, crosses, segment_segment};
 use kurbo::{Affine, BezPath, Point};
 
@@ -24,8 +26,9 @@ const SHORTER: [f64; 3] = [0.0, 0.07, 0.15];
 /// An element in its place.
 #[derive(Clone, Debug)]
 pub(super) struct Placed {
-    pub blob: usize,
-    pub fit: Fit,
+    /// Index of its container's field.
+    pub field: usize,
+    pub template: usize,
     /// The template's paths, bent.
     pub paths: Vec<BezPath>,
     /// Mean scale, for stroke widths.
@@ -41,83 +44,85 @@ pub(super) struct Placement {
     /// Half stroke width of each placed element.
     strokes: Vec<f64>,
     pub placed: Vec<Placed>,
+    /// Outer contours of everything placed, without holes.
+    pub silhouettes: Vec<Contour>,
 }
 
 impl Placement {
-    pub fn new(bounds: kurbo::Rect, cell: f64) -> Self {
-        Placement { outlines: SegmentGrid::new(bounds, cell), strokes: Vec::new(), placed: Vec::new() }
+    /// Nothing placed yet.
+    pub fn new(prepared: &Prepared) -> Self {
+        let spacing = prepared.fields.iter().map(|field| field.sizes.spacing).fold(f64::INFINITY, f64::min);
+        Placement {
+            outlines: SegmentGrid::new(prepared.bounds, spacing / 6.0),
+            strokes: Vec::new(),
+            placed: Vec::new(),
+            silhouettes: Vec::new(),
+        }
     }
 
     /// Places an element as wide as it goes. False if it does not go at all.
-    pub fn place(
-        &mut self,
-        index: usize,
-        blob: &Blob,
-        first: &Fit,
-        template: &Template,
-        field: &Field,
-    ) -> bool {
-        let spacing = field.sizes.spacing;
-        for cut in SHORTER {
-            let length = first.to - first.from;
-            let part = (first.from + cut * length, first.to - cut * length);
-            let (spine, bounds, curvature) = blob.spine(part.0, part.1, spacing);
-            let Some(fit) = fit(template, first.pose, blob, part, Some(&curvature), &field.params) else {
-                continue;
-            };
-            for factor in NARROWER {
-                let width = [fit.width[0].scaled(factor), fit.width[1].scaled(factor)];
-                let bend = Bend {
-                    spine: spine.clone(),
-                    width: width.clone().into(),
-                    curvature: bounds.clone().into(),
-                    blend: 0.2 * template.half_width(),
-                };
-                let (paths, outlines) = bent(template, &fit, &bend, &field.sizes);
-                let scale = factor * template_scale(&fit, template, blob);
-                let stroke = template.stroke * scale;
-                if self.keeps_apart(&outlines, stroke, field) && !folded(&outlines, template) {
-                    let spine = (0..=24).map(|i| spine.jet(f64::from(i) / 24.0).p).collect();
-                    self.accept(
-                        Placed {
-                            blob: index,
-                            fit: Fit { width, ..fit },
-                            paths,
-                            scale,
-                            centre: centre(&outlines),
-                            area: 0.0,
-                            spine,
-                        },
-                        &outlines,
-                        stroke,
-                    );
-                    return true;
-                }
+    pub fn place(&mut self, body: &Body, template: &Template, field: &Field) -> bool {
+        SHORTER.into_iter().any(|cut| self.place_part(body, (cut, 1.0 - cut), template, field))
+    }
+
+    fn place_part(&mut self, body: &Body, part: (f64, f64), template: &Template, field: &Field) -> bool {
+        let line = polyline::between(&body.blob.points, part.0 * body.blob.length, part.1 * body.blob.length);
+        let spine = Spine::new(&line, field.sizes.spacing);
+        let fitted = fit(template, body.fit.pose, &body.blob, part, &spine.curvature, &field.params);
+        let Some(fit) = fitted else { return false };
+        let along = (part.1 - part.0) * body.blob.length / template.length;
+        let mut bend = spine.bend(fit.width.clone(), template);
+        for factor in NARROWER {
+            bend.width = (fit.width[0].scaled(factor), fit.width[1].scaled(factor));
+            let (paths, outlines) = bent(template, fit.pose, &bend, &field.sizes);
+            // The geometric mean of the scales along and across, for stroke widths.
+            let scale = factor * along * libm::exp(fit.distortion / 2.0);
+            let stroke = template.stroke * scale;
+            if self.keeps_apart(&outlines, stroke, field) && !folded(&outlines, template) {
+                let owner = self.strokes.len() as u32;
+                outlines.iter().for_each(|outline| self.outlines.insert_contour(outline, owner));
+                self.strokes.push(stroke);
+                let silhouette = simplified(&outlines, false);
+                let painted = area(&silhouette);
+                self.silhouettes.extend(silhouette.into_iter().filter(is_outer));
+                self.placed.push(Placed {
+                    field: body.blob.field,
+                    template: fit.pose.template,
+                    paths,
+                    scale,
+                    centre: centre(&outlines),
+                    area: painted,
+                    spine: (0..=24).map(|i| bend.spine.jet(f64::from(i) / 24.0).p).collect(),
+                });
+                return true;
             }
         }
         false
     }
 
-    fn accept(&mut self, mut placed: Placed, outlines: &[Contour], stroke: f64) {
-        let owner = self.placed.len() as u32;
-        for outline in outlines {
-            self.outlines.insert_contour(outline, owner);
-        }
-        placed.area = crate::geom::boolean::area(&crate::geom::boolean::simplified(outlines, false));
-        self.strokes.push(stroke);
-        self.placed.push(placed);
+    /// Adds the outline of something that is not an element.
+    pub fn add_outline(&mut self, outline: &Contour) {
+        let owner = self.strokes.len() as u32;
+        self.strokes.push(0.0);
+        self.outlines.insert_contour(outline, owner);
+    }
+
+    /// Distance from a place to the nearest outline, from inside as from outside; `reach` at
+    /// most.
+    pub fn distance(&self, at: Point, reach: f64) -> f64 {
+        self.outlines.distance(at, reach)
     }
 
     /// True if every outline is inside the region and keeps the gap to what is placed.
     fn keeps_apart(&self, outlines: &[Contour], stroke: f64, field: &Field) -> bool {
-        // Rounding to the written decimals moves points by less than this share of the gap.
-        const ROUNDING: f64 = 1e-3;
-        let gap = field.sizes.gap * (1.0 + ROUNDING) + stroke;
+        let gap = field.sizes.safe_gap() + stroke;
+        // Where the outline wants next to no distance, chords must not hide an excess.
+        let margin = stroke + (field.sizes.tolerance() - field.sizes.edge).max(0.0);
         for outline in outlines {
             let Some(&last) = outline.last() else { continue };
             let mut previous = last;
             for &p in outline {
-                if !field.region.contains(p) || (stroke > 0.0 && field.region.distance(p, stroke) < stroke) {
+                if !field.region.contains(p) || (margin > 0.0 && field.region.distance(p, margin) < margin) {
                     return false;
                 }
                 let mut fine = true;
@@ -144,15 +149,13 @@ impl Placement {
 /// The template's paths bent into place, and their outlines.
 fn bent(
     template: &Template,
-    fit: &Fit,
+    pose: Pose,
     bend: &Bend,
-    sizes: &super::params::Sizes,
+    sizes: &Sizes,
 ) -> (Vec<BezPath>, Vec<Contour>) {
-    let pose = fit.pose;
     let (u0, du) = if pose.along { (1.0, -1.0) } else { (0.0, 1.0) };
     let to_pose = Affine::new([du, 0.0, 0.0, if pose.across { -1.0 } else { 1.0 }, u0, 0.0]);
-    // Curves are true to a four-hundredth of the spacing: a tenth of a millimetre on a poster.
-    let tolerance = sizes.spacing / 400.0;
+    let tolerance = sizes.tolerance();
     let mut paths = Vec::new();
     let mut outlines = Vec::new();
     for (path, _) in &template.parts {
@@ -177,12 +180,6 @@ fn folded(outlines: &[Contour], template: &Template) -> bool {
     outlines.iter().any(|outline| self_crossing(outline).is_some()) && !was_crossed()
 }
 
-/// Geometric mean of the scales along and across.
-fn template_scale(fit: &Fit, template: &Template, blob: &Blob) -> f64 {
-    let along = (fit.to - fit.from) * blob.length / template.length;
-    along * libm::exp(fit.distortion / 2.0)
-}
-
 fn centre(outlines: &[Contour]) -> Point {
     let (mut sum, mut count) = (kurbo::Vec2::ZERO, 0.0);
     for p in outlines.iter().flatten() {
@@ -190,16 +187,4 @@ fn centre(outlines: &[Contour]) -> Point {
         count += 1.0;
     }
     (sum / f64::max(count, 1.0)).to_point()
-}
-
-/// How much of a fit's praise stays after its distortion and its neighbours.
-pub(super) fn score(fit: &Fit, room: f64, repeats: f64, against: bool, params: &Params) -> f64 {
-    // Weights of the three against the share of the room that is filled.
-    const DISTORTION: f64 = 0.12;
-    const REPEATS: f64 = 0.3;
-    const AGAINST: f64 = 0.25;
-    fit.area / room.max(f64::MIN_POSITIVE)
-        - DISTORTION * fit.distortion.abs()
-        - REPEATS * params.variety * repeats
-        - if against { AGAINST } else { 0.0 }
 }

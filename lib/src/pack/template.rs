@@ -20,6 +20,8 @@ pub(super) struct Template {
     pub parts: Vec<(BezPath, Style)>,
     /// Largest extent on the side v > 0 and v < 0 in each bin of u.
     pub extents: [Vec<f64>; 2],
+    /// Widest extent on either side.
+    pub half_width: f64,
     /// Length along the spine.
     pub length: f64,
     pub side: Side,
@@ -117,16 +119,12 @@ impl Template {
             builtin,
             names,
             parts: parts.into_iter().map(|(path, style, _)| (to_uv * path, style)).collect(),
+            half_width: widest[0].max(widest[1]),
             extents,
             length: x1 - x0,
             side,
             stroke,
         })
-    }
-
-    /// Widest extent on either side.
-    pub fn half_width(&self) -> f64 {
-        max(&self.extents[0]).max(max(&self.extents[1]))
     }
 }
 

@@ -1,0 +1,350 @@
+//! The walk itself: coordinates and styles from the root down, clones followed.
+
+use super::collect::{Gathering, Situation};
+use super::resolver::{Resolver, is_svg, nested_viewport, own_transform};
+use crate::artwork::Part;
+use crate::error::Error;
+use crate::scene::Scene;
+use crate::style::Style;
+use crate::units::{Axis, Units, mean_scale};
+use crate::vocabulary::NAMESPACE;
+use crate::xml::PlainAttribute;
+use crate::{shape, text};
+use kurbo::{Affine, BezPath, Size};
+use roxmltree::{Node, NodeId};
+use std::collections::HashSet;
+use std::rc::Rc;
+
+/// Largest coefficient of a transform: it takes the smallest drawing to the largest.
+const LARGEST_SCALE: f64 = 1e18;
+
+/// What to do next; the stack holds the rest of the drawing.
+enum Visit<'a, 'i> {
+    /// An element and its siblings after it.
+    Row(Place<'a, 'i>),
+    /// An element alone.
+    One(Place<'a, 'i>),
+    /// The object that opened the newest collector is done.
+    Close,
+    /// The content of the newest `<use>` is done.
+    LeaveUse,
+}
+
+/// A node with everything it inherits.
+#[derive(Clone)]
+struct Place<'a, 'i> {
+    node: Node<'a, 'i>,
+    /// From the parent's coordinates to the root's.
+    transform: Affine,
+    viewport: Size,
+    /// The parent's style.
+    style: Rc<Style>,
+    /// Inside `<defs>`, where only templates are looked for.
+    in_defs: bool,
+    /// Inside `display:none` or a definition, where only annotated objects count.
+    hidden: bool,
+}
+
+struct Walk<'r, 'a, 'i> {
+    resolver: &'r Resolver<'a, 'i>,
+    selection: HashSet<NodeId>,
+    stack: Vec<Visit<'a, 'i>>,
+    gathering: Gathering<'r, 'a, 'i>,
+    /// Targets of the `<use>` elements around, to find clones that contain themselves.
+    uses: Vec<NodeId>,
+    used: HashSet<NodeId>,
+    counts: Counts,
+}
+
+/// What grows faster than the drawing's text, and so has a limit of its own.
+#[derive(Default)]
+struct Counts {
+    instances: usize,
+    nodes: usize,
+    bytes: usize,
+    texts: usize,
+}
+
+/// Walks the drawing once.
+pub(super) fn walk(resolver: &Resolver, selection: HashSet<NodeId>) -> Result<Scene, Error> {
+    let root = resolver.xml.root_element();
+    let units = Units { viewport: resolver.view.size(), em: 16.0 };
+    let mut walk = Walk {
+        resolver,
+        selection,
+        stack: Vec::new(),
+        gathering: Gathering::new(resolver),
+        uses: Vec::new(),
+        used: HashSet::new(),
+        counts: Counts::default(),
+    };
+    walk.push_children(&Place {
+        node: root,
+        transform: Affine::IDENTITY,
+        viewport: units.viewport,
+        style: Rc::new(resolver.cascade.computed(root, &Style::initial(), &units)),
+        in_defs: false,
+        hidden: false,
+    });
+    while let Some(visit) = walk.stack.pop() {
+        walk.visit(visit)?;
+    }
+    Ok(walk.gathering.finish())
+}
+
+impl<'a, 'i> Walk<'_, 'a, 'i> {
+    fn visit(&mut self, visit: Visit<'a, 'i>) -> Result<(), Error> {
+        match visit {
+            Visit::Row(place) => {
+                if let Some(next) = place.node.next_sibling_element() {
+                    self.stack.push(Visit::Row(Place { node: next, ..place.clone() }));
+                }
+                // An ordinary drawing around the annotated objects costs nothing.
+                let only_marked = self.gathering.is_empty() || place.hidden;
+                if only_marked && !self.resolver.is_marked(place.node) { Ok(()) } else { self.enter(place) }
+            }
+            Visit::One(place) => self.enter(place),
+            Visit::Close => self.gathering.close(),
+            Visit::LeaveUse => {
+                if let Some(target) = self.uses.pop() {
+                    self.used.remove(&target);
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn push_children(&mut self, parent: &Place<'a, 'i>) {
+        if let Some(first) = parent.node.first_element_child() {
+            self.stack.push(Visit::Row(Place { node: first, ..parent.clone() }));
+        }
+    }
+
+    /// True inside the content of a `<use>`.
+    fn in_clone(&self) -> bool {
+        !self.uses.is_empty()
+    }
+
+    fn enter(&mut self, mut place: Place<'a, 'i>) -> Result<(), Error> {
+        let node = place.node;
+        let name = node.tag_name().name();
+        let is_result = node.attribute((NAMESPACE, "result")).is_some();
+        if !is_svg(&node, name) || is_result || is_never_drawn(name) {
+            return Ok(());
+        }
+        self.count(node)?;
+        if matches!(name, "defs" | "symbol") {
+            // Drawn only where a clone refers to it, which does not come this way.
+            (place.in_defs, place.hidden) = (true, true);
+        }
+
+        let outermost = self.gathering.is_empty();
+        let situation = Situation {
+            in_defs: place.in_defs,
+            in_clone: self.in_clone(),
+            selected: !self.in_clone() && self.selection.contains(&node.id()),
+        };
+        let opened = self.gathering.open(node, &situation)?;
+        if opened {
+            self.stack.push(Visit::Close);
+            place.hidden = false;
+            if outermost {
+                // Opacity of the groups around belongs to those groups, not to copies.
+                Rc::make_mut(&mut place.style).forget_opacity();
+            }
+        }
+        let units = Units { viewport: place.viewport, em: place.style.font_size() };
+        // A group with a broken transform is entered only for what is annotated below it,
+        // and that has no place either.
+        place.transform *= own_transform(node, &units).map_err(|what| self.broken(node, &what))?;
+        place.style = Rc::new(self.resolver.cascade.computed(node, &place.style, &units));
+        if self.resolver.cascade.is_exhausted() {
+            return Err(self.style_too_complex(node));
+        }
+        place.hidden |= place.style.is_display_none() && !opened;
+        if place.hidden && !self.resolver.is_marked(node) {
+            return Ok(());
+        }
+        self.content(place, &units)
+    }
+
+    /// Counts a node of a clone's content.
+    fn count(&mut self, node: Node) -> Result<(), Error> {
+        if !self.in_clone() {
+            return Ok(());
+        }
+        let limits = self.resolver.limits;
+        let tag_end = node.first_child().map_or(node.range().end, |child| child.range().start);
+        self.counts.nodes += 1;
+        self.counts.bytes += tag_end.saturating_sub(node.range().start);
+        if self.counts.nodes > limits.instance_nodes || self.counts.bytes > limits.instance_bytes {
+            return Err(self.too_many_clones(node, "The clones in the annotated objects repeat too much"));
+        }
+        Ok(())
+    }
+
+    /// What a node draws, or the nodes below it.
+    fn content(&mut self, mut place: Place<'a, 'i>, units: &Units) -> Result<(), Error> {
+        let node = place.node;
+        let is_drawn = !self.gathering.is_empty() && !place.hidden;
+        match node.tag_name().name() {
+            "use" if is_drawn => self.enter_use(&place, units),
+            "use" => Ok(()),
+            "svg" => {
+                if let Some((fit, viewport)) = nested_viewport(node, units, (None, None)) {
+                    place.transform *= fit;
+                    place.viewport = viewport;
+                    self.push_children(&place);
+                }
+                Ok(())
+            }
+            "text" if is_drawn => self.text(&place),
+            "text" => Ok(()),
+            _ if !shape::is_shape(node) => {
+                self.push_children(&place);
+                Ok(())
+            }
+            _ if !is_drawn => Ok(()),
+            _ => {
+                let path = shape::outline(node, units).map_err(|what| self.broken(node, &what))?;
+                self.part(&place, path)
+            }
+        }
+    }
+
+    fn enter_use(&mut self, place: &Place<'a, 'i>, units: &Units) -> Result<(), Error> {
+        let node = place.node;
+        let Some(target) = self.resolver.href(node)? else {
+            self.gathering.warn(format!(
+                "{}: a clone refers to nothing in this drawing and is left out",
+                self.resolver.position(node)
+            ));
+            return Ok(());
+        };
+        if self.used.contains(&target.id()) || node.ancestors().any(|ancestor| ancestor == target) {
+            return Err(Error::new(
+                "clone-cycle",
+                format!("The clone '{}' contains itself", self.resolver.reference(node)),
+                "Delete the clone, or unlink it (Edit > Clone > Unlink Clone)",
+            )
+            .at(self.resolver.position(node)));
+        }
+        self.counts.instances += 1;
+        let limit = self.resolver.limits.instances;
+        if self.counts.instances > limit {
+            let sentence = format!("The annotated objects contain more than {limit} clones");
+            return Err(self.too_many_clones(node, &sentence));
+        }
+        let side = |name, axis| node.plain(name).and_then(|text| units.resolve(text, axis));
+        let mut inner = place.clone();
+        inner.transform *=
+            Affine::translate((side("x", Axis::X).unwrap_or(0.0), side("y", Axis::Y).unwrap_or(0.0)));
+        inner.in_defs = false;
+        inner.node = target;
+        self.uses.push(target.id());
+        self.used.insert(target.id());
+        self.stack.push(Visit::LeaveUse);
+        if !matches!(target.tag_name().name(), "symbol" | "svg") {
+            self.stack.push(Visit::One(inner));
+            return Ok(());
+        }
+        self.count(target)?;
+        let size = (side("width", Axis::X), side("height", Axis::Y));
+        if let Some((fit, viewport)) = nested_viewport(target, units, size) {
+            inner.transform *= fit;
+            inner.viewport = viewport;
+            inner.style = Rc::new(self.resolver.cascade.computed(target, &inner.style, units));
+            self.push_children(&inner);
+        }
+        Ok(())
+    }
+
+    fn text(&mut self, place: &Place<'a, 'i>) -> Result<(), Error> {
+        let node = place.node;
+        self.counts.texts += 1;
+        let limit = self.resolver.limits.texts;
+        let outlines = if self.counts.texts > limit {
+            Err(format!("only {limit} texts of a drawing are laid out"))
+        } else {
+            text::outlines(node, &place.style, self.resolver)
+        };
+        let outlines = outlines.map_err(|what| {
+            Error::new(
+                "text-without-outline",
+                format!("The text '{}' has no outline: {what}", self.resolver.reference(node)),
+                "Install its font, or turn it into a path (Path > Object to Path)",
+            )
+            .at(self.resolver.position(node))
+        })?;
+        for path in outlines {
+            self.part(place, path)?;
+        }
+        Ok(())
+    }
+
+    fn part(&mut self, place: &Place<'a, 'i>, path: BezPath) -> Result<(), Error> {
+        let limit = self.resolver.limits.coordinate;
+        let in_range = |value: f64| value.abs() <= limit;
+        let is_sane = place.transform.as_coeffs().iter().all(|c| c.abs() <= LARGEST_SCALE);
+        let width = place.style.stroke_width().unwrap_or(0.0) * mean_scale(place.transform);
+        let mut points = path.elements().iter().flat_map(shape::points_of).map(|p| (p, place.transform * p));
+        let points_fit =
+            points.all(|(own, p)| in_range(p.x) && in_range(p.y) && own.x.is_finite() && own.y.is_finite());
+        if !(is_sane && in_range(width) && points_fit) {
+            return Err(Error::new(
+                "coordinate-range",
+                format!(
+                    "The object '{}' has a coordinate that is no number or beyond {limit:e}",
+                    self.resolver.reference(place.node)
+                ),
+                "Move or scale it back onto the page",
+            )
+            .at(self.resolver.position(place.node)));
+        }
+        self.gathering.add(Part { path, transform: place.transform, style: place.style.as_ref().clone() });
+        Ok(())
+    }
+
+    fn broken(&self, node: Node, what: &str) -> Error {
+        Error::new(
+            "broken-object",
+            format!("The object '{}' cannot be read: {what}", self.resolver.reference(node)),
+            "Redraw it, or clear its mark",
+        )
+        .at(self.resolver.position(node))
+    }
+
+    fn too_many_clones(&self, node: Node, sentence: &str) -> Error {
+        Error::new("too-many-clones", sentence, "Mark fewer objects, or unlink some clones")
+            .at(self.resolver.position(node))
+    }
+
+    fn style_too_complex(&self, node: Node) -> Error {
+        Error::new(
+            "style-too-complex",
+            "The drawing's style sheets have too many rules for the number of annotated objects",
+            "Copy what is to be filled into a new drawing",
+        )
+        .at(self.resolver.position(node))
+    }
+}
+
+/// Content that is never drawn where it stands and holds no templates.
+fn is_never_drawn(name: &str) -> bool {
+    matches!(
+        name,
+        "clipPath"
+            | "mask"
+            | "pattern"
+            | "marker"
+            | "linearGradient"
+            | "radialGradient"
+            | "filter"
+            | "metadata"
+            | "style"
+            | "script"
+            | "title"
+            | "desc"
+            | "foreignObject"
+    )
+}

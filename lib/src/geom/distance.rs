@@ -1,0 +1,89 @@
+//! The exact Euclidean distance transform of a grid (Felzenszwalb and Huttenlocher 2012,
+//! *Distance transforms of sampled functions*): linear in the number of cells.
+
+/// Squared distance, in cells, from every cell to the nearest marked one; infinite if none
+/// is. Row by row.
+pub fn squared_distances(marked: &[bool], columns: usize) -> Vec<f64> {
+    let rows = marked.len() / columns.max(1);
+    let mut grid: Vec<f64> = marked.iter().map(|&m| if m { 0.0 } else { f64::INFINITY }).collect();
+    let mut line = Vec::new();
+    let mut hull = Hull::default();
+    for column in 0..columns {
+        line.clear();
+        line.extend((0..rows).map(|row| grid[row * columns + column]));
+        hull.transform(&mut line);
+        for (row, value) in line.iter().enumerate() {
+            grid[row * columns + column] = *value;
+        }
+    }
+    for row in grid.chunks_exact_mut(columns.max(1)) {
+        hull.transform(row);
+    }
+    grid
+}
+
+/// The lower envelope of parabolas, one rooted in every sample.
+#[derive(Default)]
+struct Hull {
+    roots: Vec<(usize, f64)>,
+    starts: Vec<f64>,
+}
+
+impl Hull {
+    fn transform(&mut self, line: &mut [f64]) {
+        self.roots.clear();
+        self.starts.clear();
+        for (i, &height) in line.iter().enumerate() {
+            if height.is_infinite() {
+                continue;
+            }
+            let mut start = f64::NEG_INFINITY;
+            while let Some(&(j, other)) = self.roots.last() {
+                let (x, y) = (i as f64, j as f64);
+                start = ((height + x * x) - (other + y * y)) / (2.0 * (x - y));
+                if start > self.starts[self.starts.len() - 1] {
+                    break;
+                }
+                self.roots.pop();
+                self.starts.pop();
+                start = f64::NEG_INFINITY;
+            }
+            self.roots.push((i, height));
+            self.starts.push(start);
+        }
+        if self.roots.is_empty() {
+            return;
+        }
+        let mut k = 0;
+        for (x, value) in line.iter_mut().enumerate() {
+            while k + 1 < self.roots.len() && self.starts[k + 1] < x as f64 {
+                k += 1;
+            }
+            let (root, height) = self.roots[k];
+            let d = x as f64 - root as f64;
+            *value = d * d + height;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
+
+    #[test]
+    fn distances_are_exact() {
+        let mut rng = Rng::new(3);
+        let (columns, rows) = (37, 23);
+        let marked: Vec<bool> = (0..columns * rows).map(|_| rng.unit() < 0.02).collect();
+        let fast = squared_distances(&marked, columns);
+        for (i, fast) in fast.iter().enumerate() {
+            let brute = (0..marked.len()).filter(|&j| marked[j]).map(|j| {
+                let (dx, dy) = ((i % columns).abs_diff(j % columns), (i / columns).abs_diff(j / columns));
+                (dx * dx + dy * dy) as f64
+            });
+            assert!((fast - brute.fold(f64::INFINITY, f64::min)).abs() < 1e-9);
+        }
+        assert!(squared_distances(&[false; 6], 3).iter().all(|d| d.is_infinite()));
+    }
+}

@@ -1,0 +1,107 @@
+//! Placed elements to an artwork with its sublayers and counts.
+
+use super::fill::Filler;
+use super::paint;
+use super::place::Placed;
+use super::prepare::Prepared;
+use super::template::Template;
+use crate::geom::polyline;
+use kurbo::{Affine, BezPath, Point};
+use rinceau_format::{Artwork, Group, Item, Part, Scene, Style};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+/// What one run has made.
+pub(super) struct Made<'a> {
+    pub prepared: &'a Prepared,
+    pub templates: &'a [Template],
+    pub placed: &'a [Placed],
+    pub fillers: &'a [Filler],
+    pub streamlines: usize,
+}
+
+impl Made<'_> {
+    /// The three tones of a container's field.
+    fn palette(&self, field: usize, scene: &Scene) -> [&'static str; 3] {
+        let field = &self.prepared.fields[field];
+        paint::palette(&field.params.palette, scene.containers[field.container].fill.as_deref())
+    }
+
+    /// Counts for the report.
+    fn counts(&self) -> BTreeMap<String, f64> {
+        let mut counts = BTreeMap::new();
+        for placed in self.placed {
+            *counts.entry(format!("elements.{}", self.templates[placed.template].id)).or_insert(0.0) += 1.0;
+        }
+        let dots: f64 = self.fillers.iter().map(|filler| PI * filler.radius * filler.radius).sum();
+        let ink: f64 = self.placed.iter().map(|placed| placed.area).sum();
+        counts.insert("elements".into(), self.placed.len() as f64);
+        counts.insert("fillers".into(), self.fillers.len() as f64);
+        counts.insert("streamlines".into(), self.streamlines as f64);
+        counts.insert("coverage".into(), (ink + dots) / self.prepared.area.max(f64::MIN_POSITIVE));
+        counts
+    }
+}
+
+/// The result: elements, fillers, copies of fixed elements, and the final spines, hidden.
+pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
+    let prepared = made.prepared;
+    let decimals = rinceau_format::decimals_for(prepared.input_size);
+    let spacing = prepared.fields.iter().map(|field| field.sizes.spacing).fold(0.0, f64::max);
+    let tones = paint::assign(made.placed, 2.6 * spacing);
+    let mut elements = Group { name: "elements".into(), ..Group::default() };
+    let mut spines = Group { name: "spines".into(), hidden: true, ..Group::default() };
+    for (placed, tone) in made.placed.iter().zip(tones) {
+        let template = &made.templates[placed.template];
+        let palette = made.palette(placed.field, scene);
+        let parts = template.parts.iter().zip(&placed.paths).map(|((_, style), path)| {
+            let style = if template.builtin {
+                painted(style, palette[tone])
+            } else {
+                style.scaled(placed.scale, decimals)
+            };
+            Part { path: path.clone(), transform: Affine::IDENTITY, style }
+        });
+        elements.items.push(Item { of: template.id.clone(), parts: parts.collect() });
+        spines.items.push(spine_item(&placed.spine));
+    }
+    let dot = |filler: &Filler| {
+        // The accent, so that the smallest shapes are seen as one family.
+        let style = Style::filled(made.palette(filler.field, scene)[2]);
+        Item { of: "dot".into(), parts: vec![Part { path: filler.path(), transform: Affine::IDENTITY, style }] }
+    };
+    let fillers =
+        Group { name: "fillers".into(), items: made.fillers.iter().map(dot).collect(), ..Group::default() };
+    let fixed = Group {
+        name: "fixed".into(),
+        items: scene
+            .fixed
+            .iter()
+            .map(|fixed| Item { of: fixed.source.id.clone(), parts: fixed.parts.clone() })
+            .collect(),
+        ..Group::default()
+    };
+    let mut groups = vec![elements, fillers, fixed, spines];
+    groups.retain(|group| !group.items.is_empty());
+    let mut warnings = scene.warnings.clone();
+    warnings.extend(prepared.warnings.iter().cloned());
+    Artwork { groups, complete, warnings, counts: made.counts(), decimals }
+}
+
+/// A built-in part in a palette's tone. Its holes are holes, so one tone is enough.
+fn painted(style: &Style, tone: &str) -> Style {
+    let mut style = style.clone();
+    style.set("fill", tone);
+    style
+}
+
+/// A spine as a line that can be edited and marked as fixed spine.
+fn spine_item(points: &[Point]) -> Item {
+    let mut path = BezPath::new();
+    path.move_to(points[0]);
+    points[1..].iter().for_each(|&p| path.line_to(p));
+    let mut style = Style::filled("none");
+    style.set("stroke", "#ff0000");
+    style.set("stroke-width", &format!("{:.4}", polyline::length(points) / 200.0));
+    Item { of: "spine".into(), parts: vec![Part { path, transform: Affine::IDENTITY, style }] }
+}

@@ -1,0 +1,127 @@
+//! Casting: an element for every room, with an eye on its neighbours and on the arrows.
+
+use super::blob::Blob;
+use super::choose::{self, Trial};
+use super::params::Params;
+use super::prepare::{Field, Prepared};
+use super::refine::Body;
+use super::template::{self, Template};
+use crate::geom::near::{PointGrid, point_segment};
+use crate::rng::Rng;
+use kurbo::Point;
+
+/// Chooses for every blob, in order. Blobs that no element fits get none. False if the time
+/// ran out first.
+pub(super) fn cast(
+    prepared: &Prepared,
+    templates: &[Template],
+    usable: &[Vec<usize>],
+    blobs: &[Blob],
+    rng: &mut Rng,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> (Vec<Body>, bool) {
+    let spacing = prepared.fields.iter().map(|field| field.sizes.spacing).fold(f64::INFINITY, f64::min);
+    let mut neighbours = Neighbours::new(prepared, spacing);
+    let mut bodies = Vec::new();
+    for (index, blob) in blobs.iter().enumerate() {
+        if !go_on(index as f64 / blobs.len() as f64) {
+            return (bodies, false);
+        }
+        let field = &prepared.fields[blob.field];
+        if let Some(trial) = best(templates, &usable[blob.field], blob, field, &neighbours, rng) {
+            let template = &templates[trial.pose.template];
+            let part = choose::trimmed(template, trial, blob, field.sizes.min_length, &field.params);
+            if let Some(body) = Body::new(blob, trial.pose, part, template, field) {
+                neighbours.add(blob, trial.pose.template);
+                bodies.push(body);
+            }
+        }
+    }
+    (bodies, true)
+}
+
+/// The best candidate for a blob.
+fn best(
+    templates: &[Template],
+    usable: &[usize],
+    blob: &Blob,
+    field: &Field,
+    neighbours: &Neighbours,
+    rng: &mut Rng,
+) -> Option<Trial> {
+    let bin = blob.length / template::BINS as f64;
+    let room: f64 = blob.room.iter().flatten().sum::<f64>() * bin;
+    let reversed = field.guided && field.params.sense == "arrow" && runs_against(blob, &field.guides);
+    let mut best: Option<(f64, Trial)> = None;
+    for pose in choose::poses(templates, usable, blob) {
+        let Some(trial) = choose::trial(&templates[pose.template], pose, blob, (0.0, 1.0), &field.params)
+        else {
+            continue;
+        };
+        let against = field.guided && field.params.sense == "arrow" && pose.along != reversed;
+        let repeats = neighbours.repeats(blob, pose.template);
+        let score = score(&trial, room, repeats, against, &field.params)
+            + rng.between(0.0, 0.06 * field.params.variety);
+        if best.as_ref().is_none_or(|(other, _)| score > *other) {
+            best = Some((score, trial));
+        }
+    }
+    best.map(|(_, trial)| trial)
+}
+
+/// True if a line runs against the arrows of the nearest guide.
+fn runs_against(blob: &Blob, guides: &[Vec<Point>]) -> bool {
+    let middle = blob.points[blob.points.len() / 2];
+    let along = blob.points[blob.points.len() - 1] - blob.points[0];
+    let segments = guides.iter().flat_map(|guide| guide.windows(2));
+    let nearest = segments.min_by(|a, b| {
+        let distance = |s: &[Point]| point_segment(middle, s[0], s[1]);
+        distance(a).total_cmp(&distance(b))
+    });
+    nearest.is_some_and(|segment| (segment[1] - segment[0]).dot(along) < 0.0)
+}
+
+/// Where which template already is.
+struct Neighbours {
+    grid: PointGrid,
+    reach: f64,
+}
+
+impl Neighbours {
+    fn new(prepared: &Prepared, spacing: f64) -> Self {
+        Neighbours {
+            grid: PointGrid::new(prepared.bounds, 2.0 * spacing),
+            reach: 1.6 * spacing,
+        }
+    }
+
+    fn add(&mut self, blob: &Blob, template: usize) {
+        Self::marks(blob).for_each(|p| self.grid.insert(p, template as u32));
+    }
+
+    /// 1 for an equal element beside most of a blob, 0 for none.
+    fn repeats(&self, blob: &Blob, template: usize) -> f64 {
+        let beside = Self::marks(blob)
+            .filter(|&p| self.grid.any_within(p, self.reach, |_, other| other == template as u32))
+            .count();
+        beside as f64 / Self::marks(blob).count() as f64
+    }
+
+    /// A few places along a blob.
+    fn marks(blob: &Blob) -> impl Iterator<Item = Point> + '_ {
+        let n = blob.points.len();
+        (0..5).map(move |i| blob.points[i * (n - 1) / 4])
+    }
+}
+
+/// How much of a trial's praise stays after its distortion and its neighbours.
+fn score(trial: &Trial, room: f64, repeats: f64, against: bool, params: &Params) -> f64 {
+    // Weights of the three against the share of the room that is filled.
+    const DISTORTION: f64 = 0.12;
+    const REPEATS: f64 = 0.3;
+    const AGAINST: f64 = 0.25;
+    trial.area / room.max(f64::MIN_POSITIVE)
+        - DISTORTION * trial.distortion.abs()
+        - REPEATS * params.variety * repeats
+        - if against { AGAINST } else { 0.0 }
+}

@@ -1,0 +1,185 @@
+//! Fillers in the gaps that no element could take (FLOWPAK 6, checklist F-083): the largest
+//! empty circles, largest first, each with the same gap around it as an element.
+
+use super::place::Placement;
+use super::prepare::{Field, Prepared};
+use crate::geom::distance::squared_distances;
+use crate::geom::flatten::flatten;
+use crate::geom::near::PointGrid;
+use crate::geom::region::Region;
+use kurbo::{BezPath, Circle, Point, Shape, Vec2};
+use std::collections::BinaryHeap;
+
+/// Places are looked at on a grid this fine, in spacings, and then moved to the middle.
+const STEP: f64 = 1.0 / 18.0;
+/// Radii in spacings: smaller reads as dust, larger as an element of another family.
+const SMALLEST: f64 = 0.09;
+const LARGEST: f64 = 0.21;
+
+/// A filler in its place.
+#[derive(Clone, Debug)]
+pub(super) struct Filler {
+    pub field: usize,
+    pub centre: Point,
+    pub radius: f64,
+}
+
+impl Filler {
+    /// Its outline.
+    pub fn path(&self) -> BezPath {
+        // Four cubics; the error of a quarter circle is 0.03 % of the radius.
+        Circle::new(self.centre, self.radius).to_path(1e-3 * self.radius)
+    }
+}
+
+/// A place with its clearance, ordered by that, then by place.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+struct Place(u64, u64, u64);
+
+impl Place {
+    fn new(at: Point, clearance: f64) -> Self {
+        // Clearances are not negative, and non-negative floats order as their bits do.
+        Place(clearance.to_bits(), at.y.to_bits(), at.x.to_bits())
+    }
+
+    fn at(&self) -> Point {
+        Point::new(f64::from_bits(self.2), f64::from_bits(self.1))
+    }
+}
+
+/// Fills the gaps of every container that asks for it.
+pub(super) fn fill(prepared: &Prepared, placement: &mut Placement) -> Vec<Filler> {
+    let mut fillers = Vec::new();
+    let covered = Region::new(placement.silhouettes.clone());
+    for (index, field) in prepared.fields.iter().enumerate().filter(|(_, field)| field.params.fillers == "dots") {
+        fill_field(index, field, placement, covered.as_ref(), &mut fillers);
+    }
+    fillers
+}
+
+fn fill_field(
+    index: usize,
+    field: &Field,
+    placement: &mut Placement,
+    covered: Option<&Region>,
+    fillers: &mut Vec<Filler>,
+) {
+    let spacing = field.sizes.spacing;
+    let (smallest, largest) = (SMALLEST * spacing, LARGEST * spacing);
+    // A dot may move this far to the middle of its gap.
+    let step = spacing / 10.0;
+    let reach = largest + field.sizes.safe_gap();
+    // Distances to an outline are the same inside, so what is covered has to be known.
+    let mut dots = PointGrid::new(field.region.bounds(), 2.0 * largest);
+    let clearance = |placement: &Placement, dots: &PointGrid, at: Point| {
+        let is_covered = covered.is_some_and(|covered| covered.contains(at));
+        if is_covered || dots.any_within(at, smallest, |_, _| true) {
+            return -reach;
+        }
+        clearance(field, placement, at, reach)
+    };
+    let mut heap = candidates(field, placement, covered, smallest);
+    while let Some(place) = heap.pop() {
+        // The middle may be up to a diagonal of a cell away.
+        if clearance(placement, &dots, place.at()) < smallest - step {
+            continue;
+        }
+        let (centre, radius) = centred(place.at(), step, |at| clearance(placement, &dots, at));
+        if radius < smallest {
+            continue;
+        }
+        if radius.to_bits() < place.0 && heap.peek().is_some_and(|next| radius.to_bits() < next.0) {
+            // The estimate was too good, or a filler placed since then took some of the room.
+            heap.push(Place::new(centre, radius));
+            continue;
+        }
+        let filler = Filler { field: index, centre, radius: radius.min(largest) };
+        placement.add_outline(&flatten(&filler.path(), field.sizes.tolerance())[0].points);
+        dots.insert(centre, 0);
+        // What is left of a long gap begins beside the new dot.
+        let beside = filler.radius + field.sizes.gap + smallest;
+        for k in 0..8 {
+            let angle = f64::from(k) * std::f64::consts::FRAC_PI_4;
+            let at = centre + beside * Vec2::new(libm::cos(angle), libm::sin(angle));
+            let free = clearance(placement, &dots, at);
+            if free > smallest - step {
+                heap.push(Place::new(at, free.max(0.0) + step));
+            }
+        }
+        fillers.push(filler);
+    }
+}
+
+/// The middles of the gaps between the elements, with an estimate of their clearance that is
+/// never too small, from the distance transform of all outlines.
+fn candidates(field: &Field, placement: &Placement, covered: Option<&Region>, smallest: f64) -> BinaryHeap<Place> {
+    let (bounds, step) = (field.region.bounds(), STEP * field.sizes.spacing);
+    let (columns, rows) = ((bounds.width() / step) as usize + 1, (bounds.height() / step) as usize + 1);
+    let mut marked = vec![false; columns * rows];
+    for contour in placement.silhouettes.iter().chain(field.region.contours()) {
+        mark(contour, bounds.origin(), step, columns, &mut marked);
+    }
+    let distances = squared_distances(&marked, columns);
+    let mut heap = BinaryHeap::new();
+    for (i, &squared) in distances.iter().enumerate() {
+        let neighbours = [i.wrapping_sub(1), i + 1, i.wrapping_sub(columns), i + columns];
+        if neighbours.into_iter().any(|j| distances.get(j).is_some_and(|&other| other > squared)) {
+            continue;
+        }
+        // Half a diagonal lies between a sample and its cell's middle, at both ends.
+        let most = (squared.sqrt() + std::f64::consts::SQRT_2) * step - field.sizes.edge;
+        let at = bounds.origin() + Vec2::new((i % columns) as f64 + 0.5, (i / columns) as f64 + 0.5) * step;
+        if most > smallest && field.region.contains(at) && !covered.is_some_and(|covered| covered.contains(at)) {
+            heap.push(Place::new(at, most));
+        }
+    }
+    heap
+}
+
+/// Marks the cells that a contour passes.
+fn mark(contour: &[Point], origin: Point, step: f64, columns: usize, marked: &mut [bool]) {
+    let Some(&last) = contour.last() else { return };
+    let mut previous = last;
+    for &p in contour {
+        let pieces = (previous.distance(p) / (0.5 * step)).ceil().clamp(1.0, 1e4);
+        for k in 0..pieces as usize {
+            let at = previous.lerp(p, k as f64 / pieces);
+            let (x, y) = ((at.x - origin.x) / step, (at.y - origin.y) / step);
+            if x >= 0.0 && y >= 0.0 && (x as usize) < columns {
+                if let Some(cell) = marked.get_mut(y as usize * columns + x as usize) {
+                    *cell = true;
+                }
+            }
+        }
+        previous = p;
+    }
+}
+
+/// Free radius of a dot at a place: to the elements less the gap, to the boundary in full.
+/// Negative outside.
+fn clearance(field: &Field, placement: &Placement, at: Point, reach: f64) -> f64 {
+    if !field.region.contains(at) {
+        return -reach;
+    }
+    let to_elements = placement.distance(at, reach) - field.sizes.safe_gap();
+    // The outline of the shape wants the same distance as an element does.
+    let inset = (field.sizes.gap - field.sizes.edge).max(0.0);
+    to_elements.min(field.region.distance(at, reach) - inset)
+}
+
+/// Climbs to the middle of a gap.
+fn centred(mut at: Point, mut step: f64, clearance: impl Fn(Point) -> f64) -> (Point, f64) {
+    const HALVINGS: usize = 5;
+    let mut best = clearance(at);
+    for _ in 0..HALVINGS {
+        for (x, y) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
+            let next = at + step * Vec2::new(x, y);
+            let free = clearance(next);
+            if free > best {
+                (at, best) = (next, free);
+            }
+        }
+        step /= 2.0;
+    }
+    (at, best)
+}

@@ -1,0 +1,258 @@
+//! The extension inside a real Inkscape, on a virtual display.
+//!
+//! A failing extension opens a modal dialog, which blocks a run until somebody closes it: one
+//! test does that with `xdotool`. That the drawing goes back byte by byte is tested without
+//! Inkscape, for every kind of refusal, in `reject.rs`.
+
+mod support;
+
+use roxmltree::Node;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+use support::*;
+
+/// A user of Inkscape with nothing but our extension.
+struct User {
+    home: tempfile::TempDir,
+    /// One Inkscape at a time: two at once are slower than one after the other.
+    _turn: MutexGuard<'static, ()>,
+}
+
+impl User {
+    fn new() -> Self {
+        static TURN: Mutex<()> = Mutex::new(());
+        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+        let user = User { home: folder(), _turn: turn };
+        let mut install = Command::new(binary());
+        install.arg("install");
+        user.at_home(&mut install);
+        let done = Run::of(install).succeed();
+        assert!(done.text().contains(&user.extensions().display().to_string()), "{}", done.text());
+        user
+    }
+
+    fn extensions(&self) -> PathBuf {
+        self.home.path().join("profile/extensions/rinceau")
+    }
+
+    fn at_home(&self, command: &mut Command) {
+        command.env("HOME", self.home.path()).env("INKSCAPE_PROFILE_DIR", self.home.path().join("profile"));
+        for variable in ["XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_CACHE_HOME"] {
+            command.env_remove(variable);
+        }
+        // No session bus: a call to one that does not answer waits 25 s, and one that answers
+        // may lead to another Inkscape, already open.
+        command.env("DBUS_SESSION_BUS_ADDRESS", "disabled:").env("NO_AT_BRIDGE", "1");
+        // Messages in English, whoever runs the tests.
+        command.env("LC_ALL", "C.UTF-8");
+    }
+
+    /// Opens a drawing, runs actions, and returns what it is then.
+    fn edit(&self, drawing: &str, actions: &str) -> String {
+        let input = file(&self.home, "in.svg", drawing);
+        let output = self.home.path().join("out.svg");
+        let _ = std::fs::remove_file(&output);
+        let mut inkscape = Command::new("xvfb-run");
+        inkscape.args(["-a", "inkscape", "--with-gui", "--batch-process"]);
+        inkscape
+            .arg(format!("--actions={actions};export-filename:{};export-do", output.display()))
+            .arg(&input);
+        self.at_home(&mut inkscape);
+        let done = Run::of(inkscape).limit(Duration::from_secs(90)).done();
+        std::fs::read_to_string(&output)
+            .unwrap_or_else(|error| panic!("Inkscape wrote nothing ({error}): {}", done.stderr))
+    }
+}
+
+/// The drawing apart from our layers: names, ids, geometry and transforms, in order. Inkscape
+/// adds an id to the root and empty definitions.
+fn rest(text: &str) -> Vec<String> {
+    let xml = parse(text);
+    let ours = layers(&xml);
+    let is_ours = |node: &Node| node.ancestors().any(|ancestor| ours.contains(&ancestor));
+    let is_svg = |node: &Node| node.tag_name().namespace() == Some("http://www.w3.org/2000/svg");
+    let objects = xml.descendants().filter(|node| node.is_element() && is_svg(node) && !is_ours(node));
+    let kept =
+        ["id", "d", "transform", "x", "y", "width", "height", "cx", "cy", "r", "viewBox", "style", "class"];
+    objects
+        .filter(|node| node.tag_name().name() != "defs" || node.children().any(|child| child.is_element()))
+        .map(|node| {
+            let kept = kept.iter().filter(|name| **name != "id" || node != xml.root_element());
+            let attributes = kept.filter_map(|name| Some(format!("{name}={}", node.attribute(*name)?)));
+            format!("{} {}", node.tag_name().name(), attributes.collect::<Vec<_>>().join(" "))
+        })
+        .collect()
+}
+
+#[test]
+fn a_selected_shape_fills_and_fills_anew() {
+    let user = User::new();
+    let plain = svg(
+        "<path id=\"leaf\" d=\"M 20,100 C 60,20 140,20 180,100 140,180 60,180 20,100 Z\" style=\"fill:#224466\"/>\n<rect id=\"frame\" x=\"1\" y=\"2\" width=\"190\" height=\"180\" style=\"fill:none\"/>",
+    );
+    let once = user.edit(&plain, "select-by-id:leaf;org.rinceau.pack.noprefs");
+    assert_eq!(rest(&once), rest(&plain));
+    let xml = parse(&once);
+    let [layer] = layers(&xml)[..] else { panic!("{} layers:\n{once:.3000}", layers(&xml).len()) };
+    assert_eq!(layer.attribute((INKSCAPE, "groupmode")), Some("layer"));
+    assert_eq!(layer.attribute((INKSCAPE, "label")), Some("Ornament - leaf"));
+    assert_eq!(layer.attribute((RINCEAU, "result")), Some("pack"));
+    assert_eq!(layer.attribute((RINCEAU, "source")), Some("leaf"));
+    assert_eq!(layer.attribute((RINCEAU, "seed")), Some("1"));
+    assert_eq!(layer.attribute((RINCEAU, "params")), Some("{}"), "defaults are no parameters");
+    assert!(elements(layer).len() > 10, "{} elements", elements(layer).len());
+
+    // Saved by Inkscape, opened again: the layer is made anew, not added.
+    let hidden = once.replacen("id=\"ornament-leaf\"", "id=\"ornament-leaf\" style=\"opacity:0.5\"", 1);
+    let twice = user.edit(&hidden, "select-by-id:leaf;org.rinceau.pack.noprefs");
+    assert_eq!(rest(&twice), rest(&plain));
+    let xml = parse(&twice);
+    let [layer] = layers(&xml)[..] else { panic!("{} layers", layers(&xml).len()) };
+    assert_eq!(layer.attribute("id"), Some("ornament-leaf"));
+    assert_eq!(layer.attribute("style"), Some("opacity:0.5"));
+    assert!(elements(layer).len() > 10);
+}
+
+/// A drawing in millimetres with layers, a moved and turned group, and marks.
+const IN_MM: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" xmlns:sodipodi="http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd" xmlns:rinceau="urn:rinceau:1" width="210mm" height="297mm" viewBox="0 0 210 297">
+  <g id="paper" inkscape:groupmode="layer" inkscape:label="Paper"><rect id="sheet" x="0" y="0" width="210" height="297" style="fill:#ffffee"/></g>
+  <g id="ink" inkscape:groupmode="layer" inkscape:label="Ink" transform="translate(100,100)">
+    <g id="turned" transform="rotate(30) scale(2)">
+      <rect id="panel" rinceau:role="container" class="rinceau-container" inkscape:label="Panel" x="-30" y="-20" width="60" height="40" style="fill:none;stroke:#000000"/>
+      <path id="flow" rinceau:role="guide" class="rinceau-guide" d="M -28,0 H 28" style="fill:none;stroke:#ff0000"/>
+    </g>
+    <circle id="dot" cx="0" cy="80" r="9"/>
+  </g>
+</svg>
+"##;
+
+#[test]
+fn a_drawing_in_mm_with_layers_and_a_turned_group() {
+    let user = User::new();
+    let after = user.edit(IN_MM, "org.rinceau.pack.noprefs");
+    assert_eq!(rest(&after), rest(IN_MM));
+    let xml = parse(&after);
+    let [layer] = layers(&xml)[..] else { panic!("{} layers", layers(&xml).len()) };
+    assert_eq!(layer.attribute((INKSCAPE, "label")), Some("Ornament - Panel"));
+    assert_eq!(layer.parent_element(), Some(xml.root_element()));
+    assert!(elements(layer).len() > 10);
+    for element in elements(layer) {
+        for d in element.descendants().filter_map(|node| node.attribute("d")) {
+            assert!(start_is_in_panel(d), "outside the panel: {d:.60}");
+        }
+    }
+}
+
+/// True if the first point of path data is in the panel of [`IN_MM`], in root units.
+fn start_is_in_panel(d: &str) -> bool {
+    let mut numbers =
+        d.split(|c: char| c.is_ascii_alphabetic() || c == ',' || c == ' ').filter_map(|n| n.parse().ok());
+    let (x, y): (f64, f64) = (numbers.next().unwrap(), numbers.next().unwrap());
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    let (dx, dy) = ((x - 100.0) / 2.0, (y - 100.0) / 2.0);
+    let (u, v) = (cos * dx + sin * dy, -sin * dx + cos * dy);
+    u.abs() <= 30.0 && v.abs() <= 20.0
+}
+
+#[test]
+fn marks_are_set_changed_and_cleared() {
+    let user = User::new();
+    let plain = svg(
+        "<path id=\"shape\" d=\"M 20,20 H 180 V 180 Z\" style=\"fill:#ff8800;opacity:0.9\"/>\n<path id=\"line\" d=\"M 20,20 H 180\"/>\n<path id=\"other\" d=\"M 0,0 H 9\"/>",
+    );
+    // All in one session: every action sees what the one before it did.
+    let after = user.edit(
+        &plain,
+        "select-by-id:shape;org.rinceau.mark-container.noprefs;select-clear;select-by-id:line;org.rinceau.mark-guide.noprefs;select-clear;select-by-id:other;org.rinceau.mark-fixed.noprefs;org.rinceau.mark-none.noprefs",
+    );
+    let xml = parse(&after);
+    let shape = by_id(&xml, "shape");
+    assert_eq!(shape.attribute((RINCEAU, "role")), Some("container"));
+    assert_eq!(shape.attribute("class"), Some("rinceau-container"));
+    assert_eq!(shape.attribute("style"), Some("opacity:0.9;fill:none;stroke:#000000"));
+    assert_eq!(shape.attribute("d"), Some("M 20,20 H 180 V 180 Z"));
+    let line = by_id(&xml, "line");
+    assert_eq!(line.attribute((RINCEAU, "role")), Some("guide"));
+    assert_eq!(line.attribute("style"), Some("fill:none;stroke:#ff0000;marker-end:url(#rinceau-arrow)"));
+    assert_eq!(by_id(&xml, "rinceau-arrow").tag_name().name(), "marker");
+    let other = by_id(&xml, "other");
+    assert_eq!(other.attribute((RINCEAU, "role")), None);
+    assert_eq!(other.attribute("class").unwrap_or_default(), "");
+}
+
+/// A refusal opens a dialog, which Escape closes; the drawing is the one that was opened.
+#[test]
+fn a_refusal_leaves_the_drawing_as_it_was() {
+    let user = User::new();
+    let bow_tie = svg("<path id=\"tie\" class=\"rinceau-container\" d=\"M 10,10 190,190 V 10 L 10,190 Z\"/>");
+    let input = file(&user.home, "in.svg", &bow_tie);
+    let output = user.home.path().join("out.svg");
+    // The dialog takes the keys of the window that it belongs to.
+    let script = "inkscape --with-gui --batch-process --actions=\"$1\" \"$2\" & \
+        for i in $(seq 120); do sleep 0.5; kill -0 $! 2>/dev/null || break; \
+        xdotool search --onlyvisible --name Inkscape windowfocus key Escape >/dev/null 2>&1 || true; done; \
+        kill $! 2>/dev/null; wait";
+    let mut session = Command::new("xvfb-run");
+    session.args(["-a", "bash", "-c", script, "bash"]);
+    session
+        .arg(format!("org.rinceau.pack.noprefs;export-filename:{};export-do", output.display()))
+        .arg(&input);
+    user.at_home(&mut session);
+    let done = Run::of(session).limit(Duration::from_secs(90)).done();
+    let after = std::fs::read_to_string(&output).unwrap_or_else(|error| panic!("{error}: {done:?}"));
+    assert_eq!(rest(&after), rest(&bow_tie));
+    assert!(layers(&parse(&after)).is_empty());
+}
+
+/// Both those committed and those written at installation.
+#[test]
+fn descriptions_follow_inkscape_s_schema() {
+    let folder = folder();
+    rinceau(["install", "--dir"]).arg(folder.path()).succeed();
+    let schema = Path::new("/usr/share/inkscape/extensions/inkscape.extension.rng");
+    let mut count = 0;
+    for descriptions in [folder.path().join("rinceau"), root().join("plugin-inkscape/inx")] {
+        let entries = descriptions.read_dir().unwrap().map(|entry| entry.unwrap().path());
+        for path in entries.filter(|path| path.extension().is_some_and(|extension| extension == "inx")) {
+            let mut xmllint = Command::new("xmllint");
+            xmllint.args(["--noout", "--nonet", "--relaxng"]).arg(schema).arg(&path);
+            Run::of(xmllint).succeed();
+            count += 1;
+        }
+    }
+    assert!(count >= 9, "only {count} descriptions");
+}
+
+/// The program is there, may be run, and is the one that every description names.
+#[test]
+fn an_installation_is_whole() {
+    let folder = folder();
+    // Left by an older version, and somebody else's.
+    std::fs::create_dir(folder.path().join("rinceau")).unwrap();
+    file(&folder, "rinceau/gone.inx", "old");
+    file(&folder, "other.inx", "other");
+    for _ in 0..2 {
+        rinceau(["install", "--dir"]).arg(folder.path()).succeed();
+    }
+    let own = folder.path().join("rinceau");
+    assert!(!own.join("gone.inx").exists() && folder.path().join("other.inx").exists());
+    for entry in own.read_dir().unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "inx") {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let xml = parse(&text);
+            let command = xml.descendants().find(|node| node.tag_name().name() == "command").unwrap();
+            let program = own.join(command.text().unwrap());
+            let version = Run::of({
+                let mut command = Command::new(&program);
+                command.arg("--version");
+                command
+            });
+            assert!(version.succeed().text().starts_with("rinceau "));
+            let id = xml.descendants().find(|node| node.tag_name().name() == "id").unwrap().text().unwrap();
+            assert!(id.starts_with("org.rinceau.") && !id.contains("win32"), "{id}");
+        }
+    }
+}
