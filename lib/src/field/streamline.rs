@@ -158,7 +158,9 @@ impl<'a> Tracer<'a> {
         // into a tip, it is extended there later.
         const BOUNDARY: f64 = 0.3;
         let edge = BOUNDARY * self.params.spacing;
-        self.region.contains(p) && self.region.distance(p, edge) >= edge && !self.taken.any_within(p, self.params.stop(), |_, _| true)
+        self.region.contains(p)
+            && self.region.distance(p, edge) >= edge
+            && !self.taken.any_within(p, self.params.stop(), |_, _| true)
     }
 
     /// Grows a line at both ends in turn (erratum Q-7) until both have stopped.

@@ -1,5 +1,8 @@
-//! The exact Euclidean distance transform of a grid (Felzenszwalb and Huttenlocher 2012,
-//! *Distance transforms of sampled functions*): linear in the number of cells.
+//! Grids: which cells a shape covers, and the exact Euclidean distance transform
+//! (Felzenszwalb and Huttenlocher 2012, *Distance transforms of sampled functions*). Both are
+//! linear in the number of cells.
+
+use kurbo::Point;
 
 /// Squared distance, in cells, from every cell to the nearest marked one; infinite if none
 /// is. Row by row.
@@ -66,10 +69,49 @@ impl Hull {
     }
 }
 
+/// Which cells of a grid have their middle inside simple contours (even-odd), by scan lines.
+pub fn covered(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize, rows: usize) -> Vec<bool> {
+    let mut crossings: Vec<Vec<f64>> = vec![Vec::new(); rows];
+    for contour in contours {
+        let Some(&last) = contour.last() else { continue };
+        let mut previous = last;
+        for &p in contour {
+            let (low, high) = if previous.y <= p.y { (previous, p) } else { (p, previous) };
+            // Rows whose middle lies in [low, high): each edge end counts once.
+            let row = |y: f64| ((y - origin.y) / cell - 0.5).ceil().max(0.0) as usize;
+            for (r, crossings) in crossings.iter_mut().enumerate().take(row(high.y)).skip(row(low.y)) {
+                let y = origin.y + (r as f64 + 0.5) * cell;
+                crossings.push(low.x + (y - low.y) / (high.y - low.y) * (high.x - low.x));
+            }
+            previous = p;
+        }
+    }
+    let mut covered = vec![false; columns * rows];
+    for (r, crossings) in crossings.iter_mut().enumerate() {
+        crossings.sort_by(f64::total_cmp);
+        for pair in crossings.chunks_exact(2) {
+            let column = |x: f64| (((x - origin.x) / cell - 0.5).ceil().max(0.0) as usize).min(columns);
+            covered[r * columns + column(pair[0])..r * columns + column(pair[1])].fill(true);
+        }
+    }
+    covered
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::rng::Rng;
+
+    #[test]
+    fn covered_cells_have_their_middle_inside() {
+        let contour: Vec<Point> = [(1.2, 0.7), (8.9, 2.1), (6.0, 9.3), (4.1, 4.0)].map(Point::from).to_vec();
+        let region = crate::geom::region::Region::new(vec![contour.clone()]).unwrap();
+        let covered = covered(&[contour], Point::new(0.5, 0.0), 0.7, 14, 14);
+        for (i, &covered) in covered.iter().enumerate() {
+            let middle = Point::new(0.5 + ((i % 14) as f64 + 0.5) * 0.7, ((i / 14) as f64 + 0.5) * 0.7);
+            assert_eq!(covered, region.contains(middle), "{middle:?}");
+        }
+    }
 
     #[test]
     fn distances_are_exact() {

@@ -54,7 +54,7 @@ fn finish(subpaths: &mut Vec<Subpath>, current: &mut Vec<Point>, has_close: bool
         if meet {
             points.pop();
         }
-        let closed = (has_close || meet) && points.len() > 2;
+        let closed = has_close || (meet && points.len() > 2);
         subpaths.push(Subpath { points, closed, has_close });
     }
 }

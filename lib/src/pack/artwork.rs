@@ -68,7 +68,10 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
     let dot = |filler: &Filler| {
         // The accent, so that the smallest shapes are seen as one family.
         let style = Style::filled(made.palette(filler.field, scene)[2]);
-        Item { of: "dot".into(), parts: vec![Part { path: filler.path(), transform: Affine::IDENTITY, style }] }
+        Item {
+            of: "dot".into(),
+            parts: vec![Part { path: filler.path(), transform: Affine::IDENTITY, style }],
+        }
     };
     let fillers =
         Group { name: "fillers".into(), items: made.fillers.iter().map(dot).collect(), ..Group::default() };

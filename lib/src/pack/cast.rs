@@ -89,10 +89,7 @@ struct Neighbours {
 
 impl Neighbours {
     fn new(prepared: &Prepared, spacing: f64) -> Self {
-        Neighbours {
-            grid: PointGrid::new(prepared.bounds, 2.0 * spacing),
-            reach: 1.6 * spacing,
-        }
+        Neighbours { grid: PointGrid::new(prepared.bounds, 2.0 * spacing), reach: 1.6 * spacing }
     }
 
     fn add(&mut self, blob: &Blob, template: usize) {

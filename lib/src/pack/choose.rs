@@ -93,6 +93,7 @@ fn limits(
     (from, to): (f64, f64),
     curvature: Option<&[Vec<f64>; 2]>,
     stretch: f64,
+    stride: usize,
 ) -> Option<Limits> {
     let length = (to - from) * blob.length;
     let along = length / template.length;
@@ -102,7 +103,7 @@ fn limits(
     let mut scale = [[f64::INFINITY; BINS]; 2];
     let mut least = MOST_ASPECT * along;
     for (side, scale) in scale.iter_mut().enumerate() {
-        for (i, scale) in scale.iter_mut().enumerate() {
+        for (i, scale) in scale.iter_mut().enumerate().step_by(stride) {
             let extent = extent(template, pose, side, i);
             if extent <= tip {
                 continue;
@@ -110,8 +111,8 @@ fn limits(
             let room = blob.room[side][blob_bin(i, from, to)];
             // Pulling in on the inner side of a bend makes room for more width before it.
             const MOST_BEFORE: f64 = 4.0;
-            let k = curvature.map_or(0.0, |k| k[side][i]);
-            *scale = width_before(room, k, MOST_BEFORE) / extent;
+            let before = curvature.map_or(room, |k| width_before(room, k[side][i], MOST_BEFORE));
+            *scale = before / extent;
             least = least.min(*scale);
         }
     }
@@ -119,7 +120,7 @@ fn limits(
         return None;
     }
     for scale in &mut scale {
-        for (i, scale) in scale.iter_mut().enumerate() {
+        for (i, scale) in scale.iter_mut().enumerate().step_by(stride) {
             // Less freedom towards the ends: a tip that swells is a tip no more.
             let x = 2.0 * (i as f64 + 0.5) / BINS as f64 - 1.0;
             let freedom = 1.0 + (stretch - 1.0) * (1.0 - x * x);
@@ -139,6 +140,9 @@ pub(super) struct Trial {
     pub distortion: f64,
 }
 
+/// Every so many bins are enough to compare candidates.
+const STRIDE: usize = 3;
+
 /// Tries a pose in a part of a blob without shaping its widths.
 pub(super) fn trial(
     template: &Template,
@@ -147,17 +151,17 @@ pub(super) fn trial(
     part: (f64, f64),
     params: &Params,
 ) -> Option<Trial> {
-    let limits = limits(template, pose, blob, part, None, params.stretch)?;
+    let limits = limits(template, pose, blob, part, None, params.stretch, STRIDE)?;
     let (mut weight, mut scaled) = (0.0, 0.0);
     for (side, scale) in limits.scale.iter().enumerate() {
-        for (i, scale) in scale.iter().enumerate() {
+        for (i, scale) in scale.iter().enumerate().step_by(STRIDE) {
             let extent = extent(template, pose, side, i);
             weight += extent;
             scaled += scale * extent;
         }
     }
     let distortion = libm::log(scaled / weight.max(f64::MIN_POSITIVE) / limits.along);
-    Some(Trial { pose, area: scaled * limits.bin, distortion })
+    Some(Trial { pose, area: scaled * limits.bin * STRIDE as f64, distortion })
 }
 
 /// The widest smooth fit of a pose into a part of a blob. `None` if it would be a thread.
@@ -169,7 +173,7 @@ pub(super) fn fit(
     curvature: &[Vec<f64>; 2],
     params: &Params,
 ) -> Option<Fit> {
-    let limits = limits(template, pose, blob, part, Some(curvature), params.stretch)?;
+    let limits = limits(template, pose, blob, part, Some(curvature), params.stretch, 1)?;
     let spans = if params.stretch > 1.0 { SPANS } else { 1 };
     let [left, right] = limits.scale.each_ref().map(|bounds| Profile::under(bounds, spans));
     let capped = |a: &Profile, b: &Profile| a.zip(b, |a, b| a.min(MOST_UNEQUAL * b));

@@ -3,10 +3,10 @@
 
 use super::place::Placement;
 use super::prepare::{Field, Prepared};
-use crate::geom::distance::squared_distances;
+use crate::geom::boolean::Contour;
+use crate::geom::distance::{covered, squared_distances};
 use crate::geom::flatten::flatten;
 use crate::geom::near::PointGrid;
-use crate::geom::region::Region;
 use kurbo::{BezPath, Circle, Point, Shape, Vec2};
 use std::collections::BinaryHeap;
 
@@ -47,44 +47,96 @@ impl Place {
     }
 }
 
-/// Fills the gaps of every container that asks for it.
-pub(super) fn fill(prepared: &Prepared, placement: &mut Placement) -> Vec<Filler> {
-    let mut fillers = Vec::new();
-    let covered = Region::new(placement.silhouettes.clone());
-    for (index, field) in prepared.fields.iter().enumerate().filter(|(_, field)| field.params.fillers == "dots") {
-        fill_field(index, field, placement, covered.as_ref(), &mut fillers);
+/// What is covered in one container: elements by cells, dots by their circles. A distance to
+/// an outline is the same from inside, so this has to be known beside it.
+struct Cover {
+    origin: Point,
+    step: f64,
+    columns: usize,
+    rows: usize,
+    elements: Vec<bool>,
+    dots: PointGrid,
+    radii: Vec<f64>,
+}
+
+impl Cover {
+    fn new(field: &Field, silhouettes: &[Contour]) -> Self {
+        let bounds = field.region.bounds();
+        let step = STEP * field.sizes.spacing;
+        let (columns, rows) = ((bounds.width() / step) as usize + 1, (bounds.height() / step) as usize + 1);
+        let dots = PointGrid::new(bounds, 2.0 * LARGEST * field.sizes.spacing);
+        let elements = covered(silhouettes, bounds.origin(), step, columns, rows);
+        Cover { origin: bounds.origin(), step, columns, rows, elements, dots, radii: Vec::new() }
     }
-    fillers
+
+    /// True for what is covered. Nearer to an outline than a cell is wide the answer may be
+    /// that of its other side, but no dot goes so near to one.
+    fn contains(&self, at: Point) -> bool {
+        let (x, y) = ((at.x - self.origin.x) / self.step, (at.y - self.origin.y) / self.step);
+        let inside_grid = x >= 0.0 && y >= 0.0 && (x as usize) < self.columns && (y as usize) < self.rows;
+        let largest = LARGEST * self.step / STEP;
+        !inside_grid
+            || self.elements[y as usize * self.columns + x as usize]
+            || self.dots.any_within(at, largest, |centre, dot| centre.distance(at) < self.radii[dot as usize])
+    }
+
+    fn middle(&self, cell: usize) -> Point {
+        self.origin
+            + Vec2::new((cell % self.columns) as f64 + 0.5, (cell / self.columns) as f64 + 0.5) * self.step
+    }
+
+    fn add(&mut self, dot: &Filler) {
+        self.dots.insert(dot.centre, self.radii.len() as u32);
+        self.radii.push(dot.radius);
+    }
+}
+
+/// Fills the gaps of every container that asks for it. False if the time ran out first.
+pub(super) fn fill(
+    prepared: &Prepared,
+    placement: &mut Placement,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> (Vec<Filler>, bool) {
+    let mut fillers = Vec::new();
+    let wanted = |field: &Field| field.params.fillers == "dots";
+    for (index, field) in prepared.fields.iter().enumerate().filter(|(_, field)| wanted(field)) {
+        let done = index as f64 / prepared.fields.len() as f64;
+        if !fill_field(index, field, placement, &mut fillers, || go_on(done)) {
+            return (fillers, false);
+        }
+    }
+    (fillers, true)
 }
 
 fn fill_field(
     index: usize,
     field: &Field,
     placement: &mut Placement,
-    covered: Option<&Region>,
     fillers: &mut Vec<Filler>,
-) {
+    mut go_on: impl FnMut() -> bool,
+) -> bool {
     let spacing = field.sizes.spacing;
     let (smallest, largest) = (SMALLEST * spacing, LARGEST * spacing);
     // A dot may move this far to the middle of its gap.
-    let step = spacing / 10.0;
+    let step = STEP * spacing;
     let reach = largest + field.sizes.safe_gap();
-    // Distances to an outline are the same inside, so what is covered has to be known.
-    let mut dots = PointGrid::new(field.region.bounds(), 2.0 * largest);
-    let clearance = |placement: &Placement, dots: &PointGrid, at: Point| {
-        let is_covered = covered.is_some_and(|covered| covered.contains(at));
-        if is_covered || dots.any_within(at, smallest, |_, _| true) {
-            return -reach;
-        }
-        clearance(field, placement, at, reach)
+    let mut cover = Cover::new(field, &placement.silhouettes);
+    let clearance = |placement: &Placement, cover: &Cover, at: Point| {
+        if cover.contains(at) { -reach } else { clearance(field, placement, at, reach) }
     };
-    let mut heap = candidates(field, placement, covered, smallest);
+    let mut heap = candidates(field, placement, &cover, smallest);
+    const ASK_EVERY: usize = 256;
+    let mut popped = 0;
     while let Some(place) = heap.pop() {
+        popped += 1;
+        if popped % ASK_EVERY == 0 && !go_on() {
+            return false;
+        }
         // The middle may be up to a diagonal of a cell away.
-        if clearance(placement, &dots, place.at()) < smallest - step {
+        if clearance(placement, &cover, place.at()) < smallest - step {
             continue;
         }
-        let (centre, radius) = centred(place.at(), step, |at| clearance(placement, &dots, at));
+        let (centre, radius) = centred(place.at(), step, |at| clearance(placement, &cover, at));
         if radius < smallest {
             continue;
         }
@@ -95,58 +147,58 @@ fn fill_field(
         }
         let filler = Filler { field: index, centre, radius: radius.min(largest) };
         placement.add_outline(&flatten(&filler.path(), field.sizes.tolerance())[0].points);
-        dots.insert(centre, 0);
+        cover.add(&filler);
         // What is left of a long gap begins beside the new dot.
         let beside = filler.radius + field.sizes.gap + smallest;
         for k in 0..8 {
             let angle = f64::from(k) * std::f64::consts::FRAC_PI_4;
             let at = centre + beside * Vec2::new(libm::cos(angle), libm::sin(angle));
-            let free = clearance(placement, &dots, at);
+            let free = clearance(placement, &cover, at);
             if free > smallest - step {
                 heap.push(Place::new(at, free.max(0.0) + step));
             }
         }
         fillers.push(filler);
     }
+    true
 }
 
 /// The middles of the gaps between the elements, with an estimate of their clearance that is
 /// never too small, from the distance transform of all outlines.
-fn candidates(field: &Field, placement: &Placement, covered: Option<&Region>, smallest: f64) -> BinaryHeap<Place> {
-    let (bounds, step) = (field.region.bounds(), STEP * field.sizes.spacing);
-    let (columns, rows) = ((bounds.width() / step) as usize + 1, (bounds.height() / step) as usize + 1);
-    let mut marked = vec![false; columns * rows];
+fn candidates(field: &Field, placement: &Placement, cover: &Cover, smallest: f64) -> BinaryHeap<Place> {
+    let (columns, step) = (cover.columns, cover.step);
+    let mut marked = vec![false; cover.elements.len()];
     for contour in placement.silhouettes.iter().chain(field.region.contours()) {
-        mark(contour, bounds.origin(), step, columns, &mut marked);
+        mark(contour, cover, &mut marked);
     }
     let distances = squared_distances(&marked, columns);
     let mut heap = BinaryHeap::new();
     for (i, &squared) in distances.iter().enumerate() {
         let neighbours = [i.wrapping_sub(1), i + 1, i.wrapping_sub(columns), i + columns];
-        if neighbours.into_iter().any(|j| distances.get(j).is_some_and(|&other| other > squared)) {
+        let is_slope = neighbours.into_iter().any(|j| distances.get(j).is_some_and(|&other| other > squared));
+        if is_slope || cover.elements[i] {
             continue;
         }
         // Half a diagonal lies between a sample and its cell's middle, at both ends.
         let most = (squared.sqrt() + std::f64::consts::SQRT_2) * step - field.sizes.edge;
-        let at = bounds.origin() + Vec2::new((i % columns) as f64 + 0.5, (i / columns) as f64 + 0.5) * step;
-        if most > smallest && field.region.contains(at) && !covered.is_some_and(|covered| covered.contains(at)) {
-            heap.push(Place::new(at, most));
+        if most > smallest {
+            heap.push(Place::new(cover.middle(i), most));
         }
     }
     heap
 }
 
 /// Marks the cells that a contour passes.
-fn mark(contour: &[Point], origin: Point, step: f64, columns: usize, marked: &mut [bool]) {
+fn mark(contour: &[Point], cover: &Cover, marked: &mut [bool]) {
     let Some(&last) = contour.last() else { return };
     let mut previous = last;
     for &p in contour {
-        let pieces = (previous.distance(p) / (0.5 * step)).ceil().clamp(1.0, 1e4);
+        let pieces = (previous.distance(p) / (0.5 * cover.step)).ceil().clamp(1.0, 1e4);
         for k in 0..pieces as usize {
             let at = previous.lerp(p, k as f64 / pieces);
-            let (x, y) = ((at.x - origin.x) / step, (at.y - origin.y) / step);
-            if x >= 0.0 && y >= 0.0 && (x as usize) < columns {
-                if let Some(cell) = marked.get_mut(y as usize * columns + x as usize) {
+            let (x, y) = ((at.x - cover.origin.x) / cover.step, (at.y - cover.origin.y) / cover.step);
+            if x >= 0.0 && y >= 0.0 && (x as usize) < cover.columns {
+                if let Some(cell) = marked.get_mut(y as usize * cover.columns + x as usize) {
                     *cell = true;
                 }
             }
@@ -169,7 +221,7 @@ fn clearance(field: &Field, placement: &Placement, at: Point, reach: f64) -> f64
 
 /// Climbs to the middle of a gap.
 fn centred(mut at: Point, mut step: f64, clearance: impl Fn(Point) -> f64) -> (Point, f64) {
-    const HALVINGS: usize = 5;
+    const HALVINGS: usize = 4;
     let mut best = clearance(at);
     for _ in 0..HALVINGS {
         for (x, y) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {

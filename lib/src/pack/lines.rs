@@ -106,9 +106,9 @@ fn boundary(
             let thick = room >= (1.5 + BOUNDARY_BONUS) * spacing;
             if !(half_elements && thick) {
                 // Where it is thin the roomiest place comes first, so that a line into a tip
-            // starts in the middle of its root and not beside its point.
-            let middle = (room / 2.0).min(spacing / 2.0);
-            tracer.seed(p + middle * inward, spacing / 2.0 - middle);
+                // starts in the middle of its root and not beside its point.
+                let middle = (room / 2.0).min(spacing / 2.0);
+                tracer.seed(p + middle * inward, spacing / 2.0 - middle);
             }
             half_elements && thick && is_aligned(flow, p, tangent) && !is_corner(&points, i)
         })

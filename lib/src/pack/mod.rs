@@ -68,7 +68,7 @@ pub fn generate(
     let mut blobs: Vec<Blob> = Vec::new();
     for (index, (field, usable)) in prepared.fields.iter().zip(&usable).enumerate() {
         complete &= progress.step("field", index as f64 / prepared.fields.len() as f64);
-        let cell = (field.sizes.spacing / 4.0).min(prepared.input_size / 160.0);
+        let cell = (field.sizes.spacing / 4.0).min(prepared.input_size / 112.0);
         let Some(flow) = DirectionField::new(&field.region, &field.guides, cell) else { continue };
         let half_elements = usable.iter().any(|&t| templates[t].side != Side::Full);
         progress.step("streamlines", 0.0);
@@ -85,12 +85,18 @@ pub fn generate(
     complete &= refine::refine(&mut bodies, &templates, &prepared, step);
     let mut placement = Placement::new(&prepared);
     for (index, body) in bodies.iter().enumerate() {
-        progress.step("place", index as f64 / bodies.len() as f64);
+        if !progress.step("place", index as f64 / bodies.len() as f64) && index > 0 {
+            complete = false;
+            break;
+        }
         let field = &prepared.fields[body.blob.field];
         placement.place(body, &templates[body.fit.pose.template], field);
     }
-    progress.step("fill", 0.0);
-    let fillers = fill::fill(&prepared, &mut placement);
+    // Out of time, dots would fill what elements should have.
+    let mut fillers = Vec::new();
+    if complete {
+        (fillers, complete) = fill::fill(&prepared, &mut placement, |done| progress.step("fill", done));
+    }
     if placement.placed.is_empty() && complete {
         return Err(Error::new(
             "nothing-fits",
@@ -99,7 +105,17 @@ pub fn generate(
         ));
     }
     progress.step("artwork", 0.0);
-    Ok(artwork::artwork(&Made { prepared: &prepared, templates: &templates, placed: &placement.placed, fillers: &fillers, streamlines: blobs.len() }, scene, complete))
+    Ok(artwork::artwork(
+        &Made {
+            prepared: &prepared,
+            templates: &templates,
+            placed: &placement.placed,
+            fillers: &fillers,
+            streamlines: blobs.len(),
+        },
+        scene,
+        complete,
+    ))
 }
 
 /// Counts the elements before anything is built.

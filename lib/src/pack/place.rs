@@ -6,22 +6,31 @@
 //! left out; nothing that fails is drawn.
 
 use super::blob::Spine;
-use super::choose::{Pose, fit};
+use super::choose::{Pose, extent, fit};
 use super::params::Sizes;
 use super::prepare::{Field, Prepared, self_crossing};
 use super::refine::Body;
-use super::template::Template;
+use super::template::{BINS, Template};
 use crate::geom::bend::Bend;
 use crate::geom::boolean::{Contour, area, is_outer, simplified};
 use crate::geom::flatten::flatten;
-use crate::geom::polyline;
 use crate::geom::near::{SegmentGrid, crosses, segment_segment};
+use crate::geom::polyline;
 use kurbo::{Affine, BezPath, Point};
 
-/// Widths tried, one after the other, until the outline keeps its distances.
-const NARROWER: [f64; 7] = [1.0, 0.96, 0.9, 0.82, 0.72, 0.6, 0.48];
-/// Shares of the length tried after that.
-const SHORTER: [f64; 3] = [0.0, 0.07, 0.15];
+/// Widths, and shares of the length given up at both ends, tried one after the other until
+/// the outline keeps its distances. What is in the way is mostly ahead of a tip.
+const TRIES: [(f64, f64); 9] = [
+    (1.0, 0.0),
+    (0.97, 0.0),
+    (1.0, 0.025),
+    (0.94, 0.05),
+    (0.88, 0.08),
+    (0.8, 0.1),
+    (0.7, 0.14),
+    (0.58, 0.18),
+    (0.46, 0.22),
+];
 
 /// An element in its place.
 #[derive(Clone, Debug)]
@@ -62,42 +71,58 @@ impl Placement {
 
     /// Places an element as wide as it goes. False if it does not go at all.
     pub fn place(&mut self, body: &Body, template: &Template, field: &Field) -> bool {
-        SHORTER.into_iter().any(|cut| self.place_part(body, (cut, 1.0 - cut), template, field))
+        TRIES.into_iter().any(|(width, cut)| self.try_place(body, (width, cut), template, field))
     }
 
-    fn place_part(&mut self, body: &Body, part: (f64, f64), template: &Template, field: &Field) -> bool {
-        let line = polyline::between(&body.blob.points, part.0 * body.blob.length, part.1 * body.blob.length);
+    fn try_place(
+        &mut self,
+        body: &Body,
+        (width, cut): (f64, f64),
+        template: &Template,
+        field: &Field,
+    ) -> bool {
+        let (part, length) = ((cut, 1.0 - cut), body.blob.length);
+        let line = polyline::between(&body.blob.points, part.0 * length, part.1 * length);
         let spine = Spine::new(&line, field.sizes.spacing);
         let fitted = fit(template, body.fit.pose, &body.blob, part, &spine.curvature, &field.params);
         let Some(fit) = fitted else { return false };
-        let along = (part.1 - part.0) * body.blob.length / template.length;
-        let mut bend = spine.bend(fit.width.clone(), template);
-        for factor in NARROWER {
-            bend.width = (fit.width[0].scaled(factor), fit.width[1].scaled(factor));
-            let (paths, outlines) = bent(template, fit.pose, &bend, &field.sizes);
-            // The geometric mean of the scales along and across, for stroke widths.
-            let scale = factor * along * libm::exp(fit.distortion / 2.0);
-            let stroke = template.stroke * scale;
-            if self.keeps_apart(&outlines, stroke, field) && !folded(&outlines, template) {
-                let owner = self.strokes.len() as u32;
-                outlines.iter().for_each(|outline| self.outlines.insert_contour(outline, owner));
-                self.strokes.push(stroke);
-                let silhouette = simplified(&outlines, false);
-                let painted = area(&silhouette);
-                self.silhouettes.extend(silhouette.into_iter().filter(is_outer));
-                self.placed.push(Placed {
-                    field: body.blob.field,
-                    template: fit.pose.template,
-                    paths,
-                    scale,
-                    centre: centre(&outlines),
-                    area: painted,
-                    spine: (0..=24).map(|i| bend.spine.jet(f64::from(i) / 24.0).p).collect(),
-                });
-                return true;
-            }
+        let bend = spine.bend(fit.width.map(|side| side.scaled(width)), template);
+        // The geometric mean of the scales along and across, for stroke widths.
+        let along = (part.1 - part.0) * length / template.length;
+        let scale = width * along * libm::exp(fit.distortion / 2.0);
+        let stroke = template.stroke * scale;
+        let paths = bent(&template.outer, fit.pose, &bend, &field.sizes);
+        let outlines: Vec<Contour> = paths.iter().flat_map(|path| outlines(path, &field.sizes)).collect();
+        let goes = self.keeps_apart(&outlines, stroke, field) && !folded(template, fit.pose, &bend);
+        if goes {
+            self.accept(body, template, &bend, (scale, stroke), outlines, field);
         }
-        false
+        goes
+    }
+
+    fn accept(
+        &mut self,
+        body: &Body,
+        template: &Template,
+        bend: &Bend,
+        (scale, stroke): (f64, f64),
+        outlines: Vec<Contour>,
+        field: &Field,
+    ) {
+        let owner = self.strokes.len() as u32;
+        outlines.iter().for_each(|outline| self.outlines.insert_contour(outline, owner));
+        self.strokes.push(stroke);
+        let silhouette = silhouette(&outlines);
+        self.placed.push(Placed {
+            field: body.blob.field,
+            template: body.fit.pose.template,
+            paths: bent(template.parts.iter().map(|(path, _)| path), body.fit.pose, bend, &field.sizes),
+            scale,
+            centre: centre(&outlines),
+            area: area(&silhouette),
+            spine: (0..=24).map(|i| bend.spine.jet(f64::from(i) / 24.0).p).collect(),
+        });
+        self.silhouettes.extend(silhouette);
     }
 
     /// Adds the outline of something that is not an element.
@@ -115,69 +140,95 @@ impl Placement {
 
     /// True if every outline is inside the region and keeps the gap to what is placed.
     fn keeps_apart(&self, outlines: &[Contour], stroke: f64, field: &Field) -> bool {
-        let gap = field.sizes.safe_gap() + stroke;
         // Where the outline wants next to no distance, chords must not hide an excess.
         let margin = stroke + (field.sizes.tolerance() - field.sizes.edge).max(0.0);
-        for outline in outlines {
-            let Some(&last) = outline.last() else { continue };
-            let mut previous = last;
-            for &p in outline {
-                if !field.region.contains(p) || (margin > 0.0 && field.region.distance(p, margin) < margin) {
-                    return false;
-                }
-                let mut fine = true;
-                field.region.edges().visit(previous, p, 0.0, |a, b, _| {
-                    fine = !crosses(previous, p, a, b);
-                    fine
-                });
-                if fine {
-                    self.outlines.visit(previous, p, gap, |a, b, owner| {
-                        fine = segment_segment(previous, p, a, b) >= gap + self.strokes[owner as usize];
-                        fine
-                    });
-                }
-                if !fine {
-                    return false;
-                }
-                previous = p;
-            }
-        }
-        true
+        let gap = field.sizes.safe_gap() + stroke;
+        outlines.iter().all(|outline| is_inside(outline, margin, field) && self.is_clear(outline, gap))
+    }
+
+    fn is_clear(&self, outline: &Contour, gap: f64) -> bool {
+        sides(outline).all(|(p, q)| {
+            let mut clear = true;
+            self.outlines.visit(p, q, gap, |a, b, owner| {
+                clear = segment_segment(p, q, a, b) >= gap + self.strokes[owner as usize];
+                clear
+            });
+            clear
+        })
     }
 }
 
-/// The template's paths bent into place, and their outlines.
-fn bent(
-    template: &Template,
+/// True if an outline lies in the region, `margin` from its edge.
+fn is_inside(outline: &Contour, margin: f64, field: &Field) -> bool {
+    let region = &field.region;
+    let centre = centre(std::slice::from_ref(outline));
+    let radius = outline.iter().map(|p| p.distance(centre)).fold(0.0, f64::max) + margin;
+    if region.contains(centre) && region.distance(centre, radius) >= radius {
+        return true;
+    }
+    // One corner inside and no side across the edge: all of it is inside.
+    outline.first().is_some_and(|&p| region.contains(p))
+        && sides(outline).all(|(p, q)| {
+            let mut clear = true;
+            region.edges().visit(p, q, margin, |a, b, _| {
+                clear =
+                    if margin > 0.0 { segment_segment(p, q, a, b) >= margin } else { !crosses(p, q, a, b) };
+                clear
+            });
+            clear
+        })
+}
+
+fn sides(contour: &Contour) -> impl Iterator<Item = (Point, Point)> + '_ {
+    let previous = contour.last().into_iter().chain(contour);
+    previous.zip(contour).map(|(&p, &q)| (p, q))
+}
+
+/// Outer contours alone, joined: a hole is covered too, and an island in it.
+fn silhouette(outlines: &[Contour]) -> Vec<Contour> {
+    if let [outline] = outlines {
+        // It does not cross itself, or it would not have been placed.
+        return vec![outline.clone()];
+    }
+    let outer: Vec<Contour> = simplified(outlines, false).into_iter().filter(is_outer).collect();
+    if outer.len() > 1 { simplified(&outer, false) } else { outer }
+}
+
+/// Paths of a template bent into place.
+fn bent<'a>(
+    paths: impl IntoIterator<Item = &'a BezPath>,
     pose: Pose,
     bend: &Bend,
     sizes: &Sizes,
-) -> (Vec<BezPath>, Vec<Contour>) {
+) -> Vec<BezPath> {
     let (u0, du) = if pose.along { (1.0, -1.0) } else { (0.0, 1.0) };
     let to_pose = Affine::new([du, 0.0, 0.0, if pose.across { -1.0 } else { 1.0 }, u0, 0.0]);
-    let tolerance = sizes.tolerance();
-    let mut paths = Vec::new();
-    let mut outlines = Vec::new();
-    for (path, _) in &template.parts {
+    let bend_one = |path: &BezPath| {
         let mut out = BezPath::new();
-        bend.path(&(to_pose * path.clone()), tolerance, &mut out);
-        outlines.extend(flatten(&out, tolerance).into_iter().map(|subpath| subpath.points));
-        paths.push(out);
-    }
-    (paths, outlines)
+        bend.path(&(to_pose * path.clone()), sizes.tolerance(), &mut out);
+        out
+    };
+    paths.into_iter().map(bend_one).collect()
 }
 
-/// True if bending made an outline cross itself that did not before: the map is locally
-/// injective, so this happens only where a spine comes back to itself.
-fn folded(outlines: &[Contour], template: &Template) -> bool {
-    let was_crossed = || {
-        template
-            .parts
-            .iter()
-            .flat_map(|(path, _)| flatten(path, 1e-3))
-            .any(|subpath| self_crossing(&subpath.points).is_some())
+fn outlines(path: &BezPath, sizes: &Sizes) -> impl Iterator<Item = Contour> + use<> {
+    flatten(path, sizes.tolerance()).into_iter().map(|subpath| subpath.points)
+}
+
+/// True if the bent strip comes back to itself. The map is locally injective, so if the
+/// outline of the strip that holds the artwork does not cross itself, nothing in it does.
+fn folded(template: &Template, pose: Pose, bend: &Bend) -> bool {
+    let side = |side: usize, sign: f64| {
+        (0..BINS).map(move |i| (i, side, sign)).map(|(i, side, sign)| {
+            let extent = extent(template, pose, side, i).max(0.02 * template.half_width);
+            bend.point((i as f64 + 0.5) / BINS as f64, sign * extent)
+        })
     };
-    outlines.iter().any(|outline| self_crossing(outline).is_some()) && !was_crossed()
+    let mut strip: Contour = side(0, 1.0).collect();
+    let mut right: Contour = side(1, -1.0).collect();
+    right.reverse();
+    strip.extend(right);
+    self_crossing(&strip).is_some()
 }
 
 fn centre(outlines: &[Contour]) -> Point {

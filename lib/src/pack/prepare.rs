@@ -75,13 +75,15 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
 
     let mut prepared = Prepared { fields: Vec::new(), input_size, bounds, area, warnings: Vec::new() };
     for (index, (container, shape)) in scene.containers.iter().zip(&shapes).enumerate() {
+        let own_area = areas[index];
         let overrides = container.overrides.iter().map(|(name, value)| (name.as_str(), value.as_str()));
         let own = params.overridden(overrides).map_err(|error| error.at(container.source.at))?;
-        let sizes = Sizes::new(&own, area, scene.px_per_unit);
+        let sizes = Sizes::new(&own, area, own_area, scene.px_per_unit);
         // Fixed areas are kept clear by the gap, the outline by the edge distance.
-        let clear = boolean::offset(&fixed, (sizes.gap - sizes.edge).max(0.0));
+        // Chords may lie on the wrong side of a curve by the tolerance.
+        let clear = boolean::offset(&fixed, (sizes.gap - sizes.edge).max(0.0) + tolerance);
         let free = boolean::difference(shape, &clear);
-        let Some(region) = Region::new(boolean::offset(&free, -sizes.edge)) else {
+        let Some(region) = Region::new(boolean::offset(&free, -sizes.edge - tolerance)) else {
             prepared.warnings.push(format!(
                 "The container '{}' is too small or too thin for anything to fit",
                 container.source.id
@@ -160,7 +162,7 @@ fn silhouette(container: &Container, tolerance: f64) -> Result<Vec<Contour>, Err
         return Err(source.error(
             "flat-container",
             format!("The container '{name}' encloses no area"),
-            "Draw it as a closed shape, or clear its mark",
+            "Draw it as a closed shape, undo a scaling to nothing, or clear its mark",
         ));
     }
     Ok(union)

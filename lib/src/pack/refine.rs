@@ -24,11 +24,11 @@ use kurbo::Point;
 
 /// Growth tolerance α: a new element may have this share of the old one's area (4.6).
 const TOLERANCE: f64 = 0.95;
-/// Every so many bins an outline is sampled; at 100 bins an element, the samples are then
-/// closer than its gap to the next.
+/// Every so many bins an outline is sampled; the samples are then about as close as the gap
+/// to the next element.
 const STRIDE: usize = 2;
-/// An element that twice gained less than this share of its area rests for some iterations.
-const LITTLE: f64 = 4e-3;
+/// An element that gained less than this share of its area rests for some iterations.
+const LITTLE: f64 = 8e-3;
 const REST: usize = 3;
 
 /// Iterations in which mirrored elements are tried, and what they must gain.
@@ -59,7 +59,13 @@ struct Shape {
 
 impl Body {
     /// An element in a part of a blob. `None` if it does not fit there.
-    pub fn new(blob: &Blob, pose: Pose, part: (f64, f64), template: &Template, field: &Field) -> Option<Self> {
+    pub fn new(
+        blob: &Blob,
+        pose: Pose,
+        part: (f64, f64),
+        template: &Template,
+        field: &Field,
+    ) -> Option<Self> {
         let points = polyline::between(&blob.points, part.0 * blob.length, part.1 * blob.length);
         let room = [0, 1]
             .map(|side| (0..BINS).map(|i| blob.room[side][choose::blob_bin(i, part.0, part.1)]).collect());
@@ -71,7 +77,12 @@ impl Body {
 }
 
 /// Refines all bodies together. `go_on` is asked once an iteration; false ends early.
-pub(super) fn refine(bodies: &mut [Body], templates: &[Template], prepared: &Prepared, mut go_on: impl FnMut(f64) -> bool) -> bool {
+pub(super) fn refine(
+    bodies: &mut [Body],
+    templates: &[Template],
+    prepared: &Prepared,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> bool {
     let fields = &prepared.fields;
     let most = fields.iter().map(|field| field.params.iterations).max().unwrap_or(0);
     for iteration in 0..most {
@@ -79,15 +90,19 @@ pub(super) fn refine(bodies: &mut [Body], templates: &[Template], prepared: &Pre
             return false;
         }
         let neighbourhood = Neighbourhood::new(bodies, prepared);
-        let next: Vec<Option<Body>> = bodies.iter().enumerate().map(|(i, body)| {
-            let field = &fields[body.blob.field];
-            let rests = body.still > 1 && (iteration + i) % REST != 0;
-            if rests || iteration >= field.params.iterations {
-                return None;
-            }
-            let blob = moved(i, body, field, &neighbourhood, templates, prepared.input_size);
-            refitted(body, blob, templates, field, RETHINK.contains(&iteration))
-        }).collect();
+        let next: Vec<Option<Body>> = bodies
+            .iter()
+            .enumerate()
+            .map(|(i, body)| {
+                let field = &fields[body.blob.field];
+                let rests = body.still > 0 && (iteration + i) % REST != 0;
+                if rests || iteration >= field.params.iterations {
+                    return None;
+                }
+                let blob = moved(i, body, field, &neighbourhood, templates, prepared.input_size);
+                refitted(body, blob, templates, field, RETHINK.contains(&iteration))
+            })
+            .collect();
         for (body, next) in bodies.iter_mut().zip(next) {
             match next {
                 Some(next) => *body = next,
@@ -125,11 +140,9 @@ fn shape(spine: Spine, fit: &Fit, template: &Template) -> Shape {
         let extent = choose::extent(template, fit.pose, side, i);
         if side == 0 { extent } else { -extent }
     };
-    let reach =
-        [0, 1].map(|side| (0..BINS).map(|i| bend.reach(middle(i), extent(side, i)).abs()).collect());
-    let sides = [0, 1].map(|side| {
-        (0..BINS).step_by(STRIDE).map(|i| bend.point(middle(i), extent(side, i))).collect()
-    });
+    let reach = [0, 1].map(|side| (0..BINS).map(|i| bend.reach(middle(i), extent(side, i)).abs()).collect());
+    let sides = [0, 1]
+        .map(|side| (0..BINS).step_by(STRIDE).map(|i| bend.point(middle(i), extent(side, i))).collect());
     Shape { reach, sides, tips: [bend.spine.jet(0.0).p, bend.spine.jet(1.0).p] }
 }
 
@@ -155,7 +168,7 @@ impl Neighbourhood {
 
     /// How far a point of body `own` may move: its share of the space to the next body, and
     /// all of that to the boundary. Negative where the gap is not kept.
-    fn allowance(&self, own: usize, at: Point, field: &Field) -> f64 {
+    fn allowance(&self, own: usize, at: Point, field: &Field, near_edge: bool) -> f64 {
         let gap = field.sizes.safe_gap();
         let (mut nearest, mut whose) = (self.reach, None);
         self.grid.visit(at, self.reach, |p, other| {
@@ -172,23 +185,34 @@ impl Neighbourhood {
             part.clamp(0.3, 0.7)
         });
         let to_bodies = (nearest - gap) * share;
+        if !near_edge {
+            return to_bodies;
+        }
         let to_boundary = field.region.distance(at, self.reach);
         to_bodies.min(if field.region.contains(at) { to_boundary } else { -to_boundary })
     }
 }
 
 /// The body's line and room after one iteration's move.
-fn moved(index: usize, body: &Body, field: &Field, neighbourhood: &Neighbourhood, templates: &[Template], input_size: f64) -> Blob {
+fn moved(
+    index: usize,
+    body: &Body,
+    field: &Field,
+    neighbourhood: &Neighbourhood,
+    templates: &[Template],
+    input_size: f64,
+) -> Blob {
     // g_limit = 0.005 input_size (4.6), and never more than a step of the line spacing.
     let limit = (0.005 * input_size).min(0.12 * field.sizes.spacing);
     let on_boundary = body.blob.kind == LineKind::Boundary;
+    let near_edge = is_near_edge(body, field, neighbourhood.reach);
+    let allowance = |at: Point| neighbourhood.allowance(index, at, field, near_edge).min(limit);
     let mut room = [0, 1].map(|side| {
         if on_boundary && side == 1 {
             return vec![0.0; BINS];
         }
-        let allowance = |i: usize| neighbourhood.allowance(index, body.shape.sides[side][i], field).min(limit);
         // A bin between two that are asked takes the lesser answer.
-        let asked: Vec<f64> = (0..body.shape.sides[side].len()).map(allowance).collect();
+        let asked: Vec<f64> = body.shape.sides[side].iter().map(|&p| allowance(p)).collect();
         let between = |i: usize| asked[i / STRIDE].min(asked[i.div_ceil(STRIDE).min(asked.len() - 1)]);
         (0..BINS).map(|i| (body.shape.reach[side][i] + between(i)).max(0.0)).collect()
     });
@@ -205,10 +229,18 @@ fn moved(index: usize, body: &Body, field: &Field, neighbourhood: &Neighbourhood
             room[1][i] = (room[1][i] + offset).max(0.0);
         }
         for end in 0..2 {
-            extend(&mut points, end, neighbourhood.allowance(index, body.shape.tips[end], field).min(limit), field);
+            extend(&mut points, end, allowance(body.shape.tips[end]), field);
         }
     }
     Blob { length: polyline::length(&points), points, room, ..body.blob }
+}
+
+/// True if any part of a body may come within `reach` of the region's edge.
+fn is_near_edge(body: &Body, field: &Field, reach: f64) -> bool {
+    let middle = body.shape.tips[0].midpoint(body.shape.tips[1]);
+    let outline = body.shape.sides.iter().flatten().chain(&body.shape.tips);
+    let radius = outline.map(|p| p.distance(middle)).fold(0.0, f64::max) + reach;
+    !field.region.contains(middle) || field.region.distance(middle, radius) < radius
 }
 
 /// Lengthens (or shortens) a line at its end 0 or 1.
@@ -218,7 +250,8 @@ fn extend(points: &mut [Point], end: usize, by: f64, field: &Field) {
     let length = polyline::length(points);
     let by = by.min(OUTGROW * field.sizes.max_length - length).max(-0.05 * length);
     let n = points.len();
-    let (tip, before) = if end == 0 { (points[0], points[n / 12]) } else { (points[n - 1], points[n - 1 - n / 12]) };
+    let (tip, before) =
+        if end == 0 { (points[0], points[n / 12]) } else { (points[n - 1], points[n - 1 - n / 12]) };
     let along = (tip - before).normalize();
     // The move fades over a quarter of the line, so that its samples stay even.
     let reach = n / 4;
@@ -234,7 +267,9 @@ fn extend(points: &mut [Point], end: usize, by: f64, field: &Field) {
 fn offsets(room: &[Vec<f64>; 2], template: &Template, pose: Pose, limit: f64) -> Vec<f64> {
     let widest = |side: usize| (0..BINS).map(|i| choose::extent(template, pose, side, i)).fold(0.0, f64::max);
     let (left, right) = (widest(0), widest(1));
-    let wanted: Vec<f64> = (0..BINS).map(|i| ((room[0][i] * right - room[1][i] * left) / (left + right)).clamp(-limit, limit)).collect();
+    let wanted: Vec<f64> = (0..BINS)
+        .map(|i| ((room[0][i] * right - room[1][i] * left) / (left + right)).clamp(-limit, limit))
+        .collect();
     // The line that fits them best: a shift and a turn. Anything finer would copy the
     // neighbours' outlines into the spine, and the flow would wobble.
     let n = BINS as f64;
