@@ -7,6 +7,8 @@ mod install;
 mod inx;
 mod output;
 mod progress;
+#[cfg(test)]
+mod reference;
 mod run;
 
 use std::process::ExitCode;

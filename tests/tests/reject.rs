@@ -101,22 +101,22 @@ fn a_container_that_crosses_itself() {
 
 #[test]
 fn a_container_without_area() {
-    insta::assert_snapshot!(marked("d='M10,10 H190 Z'").refusal(), @"2:1: The container 'shape' is open: its ends are 180.0 apart, at 10.0,10.0 and 190.0,10.0. Join its end nodes (with the node tool, or close the path), or mark it as guide. [open-container]");
+    insta::assert_snapshot!(marked("d='M10,10 H190 Z'").refusal(), @"2:1: The container 'shape' encloses no area. Draw it as a closed shape that no transform flattens, or clear its mark. [flat-container]");
 }
 
 #[test]
 fn a_container_that_is_a_point() {
-    insta::assert_snapshot!(marked("d='M10,10'").refusal(), @"2:1: The container 'shape' encloses no area. Draw it as a closed shape, or clear its mark. [flat-container]");
+    insta::assert_snapshot!(marked("d='M10,10'").refusal(), @"2:1: The container 'shape' encloses no area. Draw it as a closed shape that no transform flattens, or clear its mark. [flat-container]");
 }
 
 #[test]
 fn a_container_without_path_data() {
-    insta::assert_snapshot!(marked("").refusal(), @"2:1: The container 'shape' encloses no area. Draw it as a closed shape, or clear its mark. [flat-container]");
+    insta::assert_snapshot!(marked("").refusal(), @"2:1: The container 'shape' encloses no area. Draw it as a closed shape that no transform flattens, or clear its mark. [flat-container]");
 }
 
 #[test]
 fn a_group_without_content() {
-    insta::assert_snapshot!(case(svg("<g id='g' class='rinceau-container'/>")).refusal(), @"2:1: The container 'g' encloses no area. Draw it as a closed shape, or clear its mark. [flat-container]");
+    insta::assert_snapshot!(case(svg("<g id='g' class='rinceau-container'/>")).refusal(), @"2:1: The container 'g' has no shape of its own: it is empty, or all in it is marked as well. Draw a closed shape in it, or clear its mark. [empty-container]");
 }
 
 #[test]
@@ -191,7 +191,7 @@ fn a_transform_that_scales_to_1e300() {
 
 #[test]
 fn a_transform_that_scales_to_nothing() {
-    insta::assert_snapshot!(case(svg(&format!("<g transform='scale(0)'>{CIRCLE}</g>"))).refusal(), @"2:25: The container 'sun' encloses no area. Draw it as a closed shape, or clear its mark. [flat-container]");
+    insta::assert_snapshot!(case(svg(&format!("<g transform='scale(0)'>{CIRCLE}</g>"))).refusal(), @"2:25: The container 'sun' encloses no area. Draw it as a closed shape that no transform flattens, or clear its mark. [flat-container]");
 }
 
 #[test]
@@ -238,7 +238,7 @@ fn a_role_inside_a_guide() {
 
 #[test]
 fn a_container_inside_a_container() {
-    insta::assert_snapshot!(case(svg(&format!("<g id='g' rinceau:role='container'>{CIRCLE}</g>"))).refusal(), @"2:1: The container 'g' encloses no area. Draw it as a closed shape, or clear its mark. [flat-container]");
+    insta::assert_snapshot!(case(svg(&format!("<g id='g' rinceau:role='container'>{CIRCLE}</g>"))).refusal(), @"2:1: The container 'g' has no shape of its own: it is empty, or all in it is marked as well. Draw a closed shape in it, or clear its mark. [empty-container]");
 }
 
 #[test]
@@ -303,12 +303,12 @@ fn text_whose_font_is_missing() {
 
 #[test]
 fn names_that_no_element_has() {
-    insta::assert_snapshot!(case(svg(CIRCLE)).flag("elements", "thistle rose").refusal(), @"2:1: No element, kind or family is called 'thistle rose'. Use auto, drawn, mixed, leaves, drops, spirals, scales, feathers, or the id of an element. [no-element]");
+    insta::assert_snapshot!(case(svg(CIRCLE)).flag("elements", "thistle rose").refusal(), @"No element, kind or family is called 'thistle'. Use auto, drawn, mixed, leaves, drops, spirals, scales, feathers, or the id of an element. [no-element]");
 }
 
 #[test]
 fn drawn_elements_where_none_is_drawn() {
-    insta::assert_snapshot!(case(svg(CIRCLE)).flag("elements", "drawn").refusal(), @"2:1: No element is drawn. Draw one: group its shapes with a straight spine and mark the group as element. [no-element]");
+    insta::assert_snapshot!(case(svg(CIRCLE)).flag("elements", "drawn").refusal(), @"No element is drawn. Draw one: group its shapes with a straight spine and mark the group as element. [no-element]");
 }
 
 #[test]

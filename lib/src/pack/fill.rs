@@ -197,10 +197,12 @@ fn mark(contour: &[Point], cover: &Cover, marked: &mut [bool]) {
         for k in 0..pieces as usize {
             let at = previous.lerp(p, k as f64 / pieces);
             let (x, y) = ((at.x - cover.origin.x) / cover.step, (at.y - cover.origin.y) / cover.step);
-            if x >= 0.0 && y >= 0.0 && (x as usize) < cover.columns {
-                if let Some(cell) = marked.get_mut(y as usize * cover.columns + x as usize) {
-                    *cell = true;
-                }
+            if x >= 0.0
+                && y >= 0.0
+                && (x as usize) < cover.columns
+                && let Some(cell) = marked.get_mut(y as usize * cover.columns + x as usize)
+            {
+                *cell = true;
             }
         }
         previous = p;

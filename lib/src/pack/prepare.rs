@@ -94,11 +94,7 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
         let own_guides: Vec<Vec<Point>> =
             guides.iter().map(|(_, line)| line).filter(|line| inside(line)).cloned().collect();
         let guided = !own_guides.is_empty();
-        let guides = if guided {
-            own_guides
-        } else {
-            region.contours().iter().map(|contour| closed(contour)).collect()
-        };
+        let guides = if guided { own_guides } else { region.contours().iter().map(closed).collect() };
         let fixed_spines =
             spines.iter().map(|(_, line)| line).filter(|line| passes(line, &region, 0.0)).cloned().collect();
         prepared.fields.push(Field {
@@ -130,6 +126,15 @@ fn bounds_of(scene: &Scene) -> Rect {
 fn silhouette(container: &Container, tolerance: f64) -> Result<Vec<Contour>, Error> {
     let source = &container.source;
     let name = &source.id;
+    if container.outlines.is_empty() {
+        return Err(source.error(
+            "empty-container",
+            format!(
+                "The container '{name}' has no shape of its own: it is empty, or all in it is marked as well"
+            ),
+            "Draw a closed shape in it, or clear its mark",
+        ));
+    }
     let mut union: Vec<Contour> = Vec::new();
     for outline in &container.outlines {
         let mut contours = Vec::new();
@@ -162,7 +167,7 @@ fn silhouette(container: &Container, tolerance: f64) -> Result<Vec<Contour>, Err
         return Err(source.error(
             "flat-container",
             format!("The container '{name}' encloses no area"),
-            "Draw it as a closed shape, undo a scaling to nothing, or clear its mark",
+            "Draw it as a closed shape that no transform flattens, or clear its mark",
         ));
     }
     Ok(union)

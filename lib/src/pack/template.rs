@@ -168,6 +168,10 @@ fn max(values: &[f64]) -> f64 {
 /// in the bin it passes, so a bin's extent is never less than what lies in it.
 fn extents(outlines: &[Vec<Point>], to_uv: Affine, stroke: f64) -> [Vec<f64>; 2] {
     let mut extents = [vec![0.0f64; BINS], vec![0.0f64; BINS]];
+    let mut reach = |bin: usize, v: f64| {
+        let extent: &mut f64 = &mut extents[usize::from(v < 0.0)][bin];
+        *extent = extent.max(v.abs() + stroke);
+    };
     for points in outlines {
         for pair in points.windows(2) {
             let (a, b) = (to_uv * pair[0], to_uv * pair[1]);
@@ -183,10 +187,7 @@ fn extents(outlines: &[Vec<Point>], to_uv: Affine, stroke: f64) -> [Vec<f64>; 2]
                 };
                 let ends = [at(i as f64 / BINS as f64), at((i + 1) as f64 / BINS as f64)];
                 let ends = if b.x > a.x { ends } else { [a.y, b.y] };
-                for v in ends {
-                    let side = usize::from(v < 0.0);
-                    extents[side][i] = extents[side][i].max(v.abs() + stroke);
-                }
+                ends.into_iter().for_each(|v| reach(i, v));
             }
         }
     }
