@@ -4,6 +4,7 @@
 
 use crate::run::{self, Job};
 use crate::{check, output, progress};
+use rinceau::params::Kind;
 use rinceau::{Error, GENERATORS, Values};
 use rinceau_format::{Document, Role, Selection};
 use std::ffi::OsString;
@@ -100,13 +101,19 @@ impl Call {
         })?;
         let seed = self.take("seed").and_then(|text| text.parse().ok()).unwrap_or(1);
         let seconds: f64 = self.take("time-limit").and_then(|text| text.parse().ok()).unwrap_or(LONGEST_RUN);
+        let unit = self.take("unit").filter(|unit| unit != "document").unwrap_or_default();
         let mut values = Values::default();
-        for (name, value) in &self.params {
-            let default = generator.table.iter().find(|spec| spec.name == name).map(|spec| spec.default);
+        for (name, value) in &mut self.params {
+            let spec = generator.table.iter().find(|spec| spec.name == name);
+            if spec.is_some_and(|spec| spec.kind == Kind::Length) && value.parse() != Ok(0.0) {
+                // The dialog's lengths are all in the unit chosen beside them.
+                value.push_str(&unit);
+            }
+            let default = spec.map(|spec| spec.default);
             // A dialog passes every parameter, with all the digits of its spin buttons.
             let same_number =
                 || value.parse::<f64>().ok().zip(default?.parse::<f64>().ok()).map(|(a, b)| a == b);
-            if default != Some(value) && same_number() != Some(true) {
+            if default != Some(value.as_str()) && same_number() != Some(true) {
                 values.set(generator.table, name, value)?;
             }
         }

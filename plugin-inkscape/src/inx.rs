@@ -8,6 +8,10 @@ use xmlwriter::XmlWriter;
 const NAMESPACE: &str = "http://www.inkscape.org/namespace/inkscape/extension";
 const MENU: &str = "Ornament";
 
+/// Units for the lengths of a dialog.
+const UNITS: &[(&str, &str)] =
+    &[("document", "units of the document"), ("mm", "mm"), ("px", "px"), ("in", "inches"), ("pt", "pt")];
+
 /// Roles in the menu, with what the menu calls them.
 const MARKS: &[(&str, &str)] = &[
     ("container", "Container (a shape to fill)"),
@@ -123,6 +127,9 @@ fn dialog(generator: &Generator, binary: &str) -> String {
             parameter(&mut inx, spec);
         }
         if page == Page::Basic {
+            let lengths =
+                "What the numbers for width and gap count in; the unit of the document is that of its ruler";
+            combo(&mut inx, "unit", "Lengths in", lengths, (UNITS, "document"));
             number(
                 &mut inx,
                 "seed",
@@ -165,7 +172,7 @@ fn help(generator: &Generator) -> &'static [&'static str] {
             "Select open lines together with it, and the ornament follows those.",
             "For more, mark objects with Extensions > Ornament > Mark as: shapes to fill as containers, lines as guides, what must stay free as fixed, and your own leaves as elements, each grouped with a straight spine.",
             "Run it again after a change: the layer is replaced, not added.",
-            "A length of 0 is chosen to suit the size of the shape. Lengths are in the units of the document.",
+            "A length of 0 is chosen to suit the size of the shape. Lengths are in the units of the document unless you choose another unit.",
         ],
         _ => &[],
     }
@@ -195,16 +202,7 @@ fn parameter(inx: &mut Inx, spec: &ParamSpec) {
             false,
         ),
         Kind::Choice(choices) | Kind::Names(choices) => {
-            inx.0.start_element("param");
-            common(inx, spec.name, "optiongroup", spec.label, spec.help);
-            inx.0.write_attribute("appearance", "combo");
-            // The first option is the default; there is no attribute for it.
-            let (default, others): (Vec<_>, Vec<_>) =
-                choices.iter().partition(|(value, _)| *value == spec.default);
-            for (value, label) in default.into_iter().chain(others) {
-                inx.text("option", &[("value", value)], label);
-            }
-            inx.0.end_element();
+            combo(inx, spec.name, spec.label, spec.help, (choices, spec.default));
         }
         Kind::Switch => inx.text(
             "param",
@@ -217,6 +215,18 @@ fn parameter(inx: &mut Inx, spec: &ParamSpec) {
             spec.default,
         ),
     }
+}
+
+/// A drop-down list. Its first option is the default; there is no attribute for it.
+fn combo(inx: &mut Inx, param: &str, label: &str, help: &str, (choices, default): (&[(&str, &str)], &str)) {
+    inx.0.start_element("param");
+    common(inx, param, "optiongroup", &format!("{label}:"), help);
+    inx.0.write_attribute("appearance", "combo");
+    let (first, others): (Vec<_>, Vec<_>) = choices.iter().partition(|(value, _)| *value == default);
+    for (value, label) in first.into_iter().chain(others) {
+        inx.text("option", &[("value", value)], label);
+    }
+    inx.0.end_element();
 }
 
 fn number(

@@ -217,14 +217,15 @@ fn every_sample_keeps_its_promises() {
     for path in support::samples() {
         let svg = std::fs::read_to_string(&path).unwrap();
         let scene = scene(&svg);
-        let artwork = pack(&scene, &[("min-gap", "3".into())], 7);
+        let gap = (scene.view.width() / 0.25).round() / 1e3;
+        let artwork = pack(&scene, &[("min-gap", gap.to_string())], 7);
         let contours: Vec<Vec<Point>> = scene
             .containers
             .iter()
             .flat_map(|container| flatten(&container.outlines[0].path, 0.004))
             .map(|subpath| subpath.points)
             .collect();
-        check(&artwork, &Region::new(contours).unwrap(), &[], 3.0);
+        check(&artwork, &Region::new(contours).unwrap(), &[], gap);
         assert!(artwork.complete, "{}", path.display());
         assert!(artwork.counts["coverage"] > 0.3, "{}: {:?}", path.display(), artwork.counts);
     }

@@ -28,7 +28,7 @@ const PALETTES: &[(&str, &str)] = &[
 ];
 
 crate::params! {
-    /// Parameters of packing. Lengths of 0 are derived: see [`Sizes`].
+    /// Parameters of packing. Lengths of 0 are derived from the area that is filled.
     pub struct Params {
         #[doc = "How wide the elements are, roughly. Larger means fewer, bolder elements. 0 chooses from the size of the shape"]
         spacing: Length = "spacing", "Element width", Basic, Kind::Length, "0";
