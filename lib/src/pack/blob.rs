@@ -19,6 +19,7 @@ use crate::geom::near::PointGrid;
 use crate::geom::polyline::{self, left_of};
 use crate::geom::spline::{Curve, Profile};
 use kurbo::{Point, Vec2};
+use rayon::prelude::*;
 
 /// Ribs are this many spacings long at most: more would make an element wider than any line
 /// spacing asks for.
@@ -131,7 +132,7 @@ pub(super) fn blobs(index: usize, field: &Field, flow: &DirectionField, lines: V
         .collect();
     let samples = Samples::new(field, &extended);
     extended
-        .iter()
+        .par_iter()
         .enumerate()
         .map(|(owner, (points, kind))| {
             let length = polyline::length(points);

@@ -167,21 +167,26 @@ fn fill_field(
 /// never too small, from the distance transform of all outlines.
 fn candidates(field: &Field, placement: &Placement, cover: &Cover, smallest: f64) -> BinaryHeap<Place> {
     let (columns, step) = (cover.columns, cover.step);
-    let mut marked = vec![false; cover.elements.len()];
-    for contour in placement.silhouettes.iter().chain(field.region.contours()) {
-        mark(contour, cover, &mut marked);
-    }
-    let distances = squared_distances(&marked, columns);
+    let distances = |contours: &[Contour]| {
+        let mut marked = vec![false; cover.elements.len()];
+        contours.iter().for_each(|contour| mark(contour, cover, &mut marked));
+        squared_distances(&marked, columns)
+    };
+    let to_elements = distances(&placement.silhouettes);
+    let to_boundary = distances(field.region.contours());
+    let inset = (field.sizes.gap - field.sizes.edge).max(0.0);
+    let estimate =
+        |i: usize| (to_elements[i].sqrt() * step - field.sizes.gap).min(to_boundary[i].sqrt() * step - inset);
+    let estimates: Vec<f64> = (0..cover.elements.len()).map(estimate).collect();
     let mut heap = BinaryHeap::new();
-    for (i, &squared) in distances.iter().enumerate() {
-        let neighbours = [i.wrapping_sub(1), i + 1, i.wrapping_sub(columns), i + columns];
-        let is_slope = neighbours.into_iter().any(|j| distances.get(j).is_some_and(|&other| other > squared));
-        if is_slope || cover.elements[i] {
+    for (i, &free) in estimates.iter().enumerate() {
+        // Half a diagonal lies between a sample and its cell's middle, at both ends.
+        let most = free + std::f64::consts::SQRT_2 * step;
+        if most <= smallest || cover.elements[i] {
             continue;
         }
-        // Half a diagonal lies between a sample and its cell's middle, at both ends.
-        let most = (squared.sqrt() + std::f64::consts::SQRT_2) * step - field.sizes.edge;
-        if most > smallest {
+        let neighbours = [i.wrapping_sub(1), i + 1, i.wrapping_sub(columns), i + columns];
+        if neighbours.into_iter().all(|j| estimates.get(j).is_none_or(|&other| other <= free)) {
             heap.push(Place::new(cover.middle(i), most));
         }
     }

@@ -66,8 +66,10 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
         }
     }
     let fixed = fixed_area(&scene.fixed, tolerance);
-    let areas: Vec<f64> =
-        shapes.iter().map(|shape| boolean::area(&boolean::difference(shape, &fixed))).collect();
+    let areas: Vec<f64> = shapes
+        .iter()
+        .map(|shape| boolean::area(&boolean::difference(shape, &near(&fixed, shape, 0.0))))
+        .collect();
     let area: f64 = areas.iter().sum();
     let guides: Vec<(usize, Vec<Point>)> = polylines(&scene.guides, tolerance);
     let spines: Vec<(usize, Vec<Point>)> = polylines(&scene.fixed_spines, tolerance);
@@ -81,7 +83,8 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
         let sizes = Sizes::new(&own, area, own_area, scene.px_per_unit);
         // Fixed areas are kept clear by the gap, the outline by the edge distance.
         // Chords may lie on the wrong side of a curve by the tolerance.
-        let clear = boolean::offset(&fixed, (sizes.gap - sizes.edge).max(0.0) + tolerance);
+        let distance = (sizes.gap - sizes.edge).max(0.0) + tolerance;
+        let clear = boolean::offset(&near(&fixed, shape, sizes.gap), distance);
         let free = boolean::difference(shape, &clear);
         let Some(region) = Region::new(boolean::offset(&free, -sizes.edge - tolerance)) else {
             prepared.warnings.push(format!(
@@ -220,11 +223,7 @@ pub(super) fn self_crossing(contour: &Contour) -> Option<Point> {
 }
 
 fn may_touch(a: &[Contour], b: &[Contour]) -> bool {
-    let bounds = |shape: &[Contour]| {
-        let mut points = shape.iter().flatten();
-        points.next().map(|&first| points.fold(Rect::from_points(first, first), |r, &p| r.union_pt(p)))
-    };
-    match (bounds(a), bounds(b)) {
+    match (bounding_box(a), bounding_box(b)) {
         (Some(a), Some(b)) => a.overlaps(b),
         _ => false,
     }
@@ -232,27 +231,39 @@ fn may_touch(a: &[Contour], b: &[Contour]) -> bool {
 
 /// What fixed elements cover, strokes included.
 fn fixed_area(fixed: &[Fixed], tolerance: f64) -> Vec<Contour> {
-    let mut area: Vec<Contour> = Vec::new();
+    let mut areas: Vec<Contour> = Vec::new();
     for part in fixed.iter().flat_map(|fixed| &fixed.parts) {
         let scale = part.transform.determinant().abs().sqrt();
         let path: BezPath = part.transform * part.path.clone();
         let subpaths = flatten(&path, tolerance);
         if part.style.is_filled() {
             let contours: Vec<Contour> = subpaths.iter().map(|subpath| subpath.points.clone()).collect();
-            area = boolean::union(
-                &area,
-                &boolean::simplified(&contours, part.style.fill_rule() == FillRule::EvenOdd),
-            );
+            areas.extend(boolean::simplified(&contours, part.style.fill_rule() == FillRule::EvenOdd));
         }
         // A fixed object with no paint at all still counts, as its outline.
         let unpainted = if part.style.is_filled() { 0.0 } else { 2.0 * tolerance };
         let width = part.style.stroke_width().map_or(unpainted, |width| width * scale);
         for Subpath { points, closed, .. } in &subpaths {
-            let pen = boolean::stroked(points, *closed, width);
-            area = boolean::union(&area, &pen);
+            areas.extend(boolean::stroked(points, *closed, width));
         }
     }
-    area
+    // Outer contours and holes run opposite ways, so windings of the parts add up to a union.
+    boolean::simplified(&areas, false)
+}
+
+/// The contours that come near a shape.
+fn near(contours: &[Contour], shape: &[Contour], distance: f64) -> Vec<Contour> {
+    let Some(around) = bounding_box(shape) else { return Vec::new() };
+    let around = around.inflate(distance, distance);
+    let is_near = |contour: &&Contour| {
+        bounding_box(std::slice::from_ref(*contour)).is_some_and(|bounds| bounds.overlaps(around))
+    };
+    contours.iter().filter(is_near).cloned().collect()
+}
+
+fn bounding_box(shape: &[Contour]) -> Option<Rect> {
+    let mut points = shape.iter().flatten();
+    points.next().map(|&first| points.fold(Rect::from_points(first, first), |r, &p| r.union_pt(p)))
 }
 
 fn polylines(guides: &[Guide], tolerance: f64) -> Vec<(usize, Vec<Point>)> {

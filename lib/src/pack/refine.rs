@@ -21,6 +21,7 @@ use crate::field::LineKind;
 use crate::geom::near::PointGrid;
 use crate::geom::polyline::{self, left_of};
 use kurbo::Point;
+use rayon::prelude::*;
 
 /// Growth tolerance α: a new element may have this share of the old one's area (4.6).
 const TOLERANCE: f64 = 0.95;
@@ -90,8 +91,9 @@ pub(super) fn refine(
             return false;
         }
         let neighbourhood = Neighbourhood::new(bodies, prepared);
+        // Each looks only at the last composition, so any number of threads gives the same.
         let next: Vec<Option<Body>> = bodies
-            .iter()
+            .par_iter()
             .enumerate()
             .map(|(i, body)| {
                 let field = &fields[body.blob.field];
