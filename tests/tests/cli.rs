@@ -650,12 +650,34 @@ mod report {
         assert!(stages.len() > 3 && sum > 0.0 && sum <= total + 1.0, "{report}");
     }
 
-    /// Running out of time is a result: a valid drawing, marked incomplete.
+    /// Running out of time is a result: a valid drawing, marked incomplete. Before the first
+    /// element is in place it is a sentence, and nothing is written.
     #[test]
     fn says_when_time_ran_out() {
-        let (report, text) = report(&["--time-limit", "0.000001"]);
+        let folder = folder();
+        let report = folder.path().join("report.json");
+        let run = |limit: f64| {
+            let limit = limit.to_string();
+            let flags =
+                ["pack", "--spacing", "3", "--time-limit", &limit, "--report", report.to_str().unwrap()];
+            rinceau(flags).input(svg(CIRCLE)).done()
+        };
+        let done = run(1e-6);
+        assert!(done.code == Some(1) && done.stderr.contains("[out-of-time]"), "{}", done.stderr);
+        assert!(!report.exists() && done.stdout.is_empty());
+        // Longer and longer, until there was time to begin but not to end.
+        let mut limit = 0.02;
+        let partial = loop {
+            let done = run(limit);
+            if done.code == Some(0) {
+                break done;
+            }
+            assert!(done.stderr.contains("[out-of-time]") && limit < 60.0, "{}", done.stderr);
+            limit *= 1.5;
+        };
+        let report: Value = serde_json::from_slice(&std::fs::read(&report).unwrap()).unwrap();
         assert_eq!(report["complete"], false);
-        assert_only_a_layer_was_added(&svg(CIRCLE), &text, "out of time");
+        assert_only_a_layer_was_added(&svg(CIRCLE), partial.text(), "out of time");
     }
 }
 
@@ -665,7 +687,8 @@ mod time_limit {
     /// The window that waits for an extension is frozen, so every stage must stop in time.
     #[test]
     fn holds_in_a_drawing_of_many_elements() {
-        let done = rinceau(["pack", "--spacing", "0.6", "--time-limit", "0.2"]).input(svg(CIRCLE)).succeed();
+        let done = rinceau(["pack", "--spacing", "0.8", "--time-limit", "0.2"]).input(svg(CIRCLE)).done();
+        assert!(done.code == Some(0) || done.stderr.contains("[out-of-time]"), "{}", done.stderr);
         assert!(done.time.as_secs_f64() < 20.0, "{:?}", done.time);
     }
 }

@@ -458,7 +458,8 @@ fn the_least_element_width_named_is_accepted() {
     let (_, remedy) = done.stderr.split_once("(--spacing) to ").expect("a remedy");
     let (spacing, _) = remedy.split_once(' ').unwrap();
     let flags = ["pack", "--fillers", "none", "--time-limit", "0.1", "--spacing", spacing];
-    rinceau(flags).input(svg(CIRCLE)).succeed();
+    let done = rinceau(flags).input(svg(CIRCLE)).done();
+    assert!(!done.stderr.contains("[too-many-elements]"), "{}", done.stderr);
 }
 
 /// Wrong usage is exit 2, with the reason and nothing on standard output.

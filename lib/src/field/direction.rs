@@ -106,6 +106,26 @@ impl DirectionField {
     }
 }
 
+/// The part of a segment inside a box (Liang and Barsky).
+fn clipped(a: Point, b: Point, bounds: Rect) -> Option<(Point, Point)> {
+    let d = b - a;
+    let (mut from, mut to) = (0.0f64, 1.0f64);
+    for (speed, low, high) in
+        [(d.x, bounds.x0 - a.x, bounds.x1 - a.x), (d.y, bounds.y0 - a.y, bounds.y1 - a.y)]
+    {
+        if speed == 0.0 {
+            if low > 0.0 || high < 0.0 {
+                return None;
+            }
+        } else {
+            let (enter, leave) = if speed > 0.0 { (low, high) } else { (high, low) };
+            from = from.max(enter / speed);
+            to = to.min(leave / speed);
+        }
+    }
+    (from < to).then(|| (a + from * d, a + to * d))
+}
+
 /// exp(2 i θ) of a unit vector.
 fn doubled(direction: Vec2) -> Vec2 {
     Vec2::new(direction.x * direction.x - direction.y * direction.y, 2.0 * direction.x * direction.y)
@@ -135,7 +155,13 @@ impl Level {
     fn constrain(&mut self, guide: &[Point], origin: Point, cell: f64) -> bool {
         let mut any = false;
         for pair in guide.windows(2) {
-            let along = pair[1] - pair[0];
+            let size = Vec2::new(self.columns as f64, self.rows as f64) * cell;
+            let Some((start, end)) =
+                clipped(pair[0], pair[1], Rect::from_origin_size(origin, size.to_size()))
+            else {
+                continue;
+            };
+            let along = end - start;
             let length = along.hypot();
             if length == 0.0 {
                 continue;
@@ -143,7 +169,7 @@ impl Level {
             let z = doubled(along / length);
             let steps = ((length / cell * 2.0).ceil() as usize).clamp(1, 4 * (self.columns + self.rows));
             for k in 0..steps {
-                let p = pair[0] + along * ((k as f64 + 0.5) / steps as f64);
+                let p = start + along * ((k as f64 + 0.5) / steps as f64);
                 let (x, y) = ((p.x - origin.x) / cell, (p.y - origin.y) / cell);
                 if !(x >= 0.0 && y >= 0.0) || x as usize >= self.columns || y as usize >= self.rows {
                     continue;
@@ -324,6 +350,14 @@ mod tests {
         ];
         let field = DirectionField::new(&square(), &guides, 2.0).unwrap();
         assert!(field.direction(Point::new(12.0, 50.0), Vec2::new(0.0, 1.0)).unwrap().y > 0.99);
+    }
+
+    #[test]
+    fn a_guide_far_longer_than_the_region_counts() {
+        let guide = vec![Point::new(-1e8, -1e8), Point::new(1e8, 1e8)];
+        let field = DirectionField::new(&square(), &[guide], 2.0).unwrap();
+        let d = field.direction(Point::new(50.0, 50.0), Vec2::new(1.0, 0.0)).unwrap();
+        assert!((d.x - d.y).abs() < 1e-3, "{d:?}");
     }
 
     #[test]

@@ -245,6 +245,10 @@ impl<'a> Tracer<'a> {
             let half = self.params.end_gap / 2.0;
             let from = if pair[0] > 0.0 { pair[0] + half } else { 0.0 };
             let to = if pair[1] < length { pair[1] - half } else { length };
+            // A gap as long as the piece leaves nothing of it.
+            if to - from < self.params.step() {
+                continue;
+            }
             let part = polyline::between(points, from, to);
             let steps = ((to - from) / self.params.step()).ceil().max(2.0) as usize;
             let points = polyline::resample(&part, steps);

@@ -67,11 +67,13 @@ pub fn stroked(points: &[Point], closed: bool, width: f64) -> Vec<Contour> {
 
 /// Signed area (positive one way round, negative the other).
 pub fn signed_area(contour: &[Point]) -> f64 {
-    let Some(last) = contour.last() else { return 0.0 };
-    let mut previous = *last;
+    let Some(&origin) = contour.last() else { return 0.0 };
+    // About a point of the contour itself: far from the origin the products would cancel.
+    let mut previous = kurbo::Vec2::ZERO;
     let mut twice = 0.0;
     for &p in contour {
-        twice += previous.to_vec2().cross(p.to_vec2());
+        let p = p - origin;
+        twice += previous.cross(p);
         previous = p;
     }
     twice / 2.0

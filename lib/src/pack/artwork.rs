@@ -5,6 +5,7 @@ use super::paint;
 use super::place::Placed;
 use super::prepare::Prepared;
 use super::template::Template;
+use crate::field::LineKind;
 use crate::geom::polyline;
 use kurbo::{Affine, BezPath, Point};
 use rinceau_format::{Artwork, Group, Item, Part, Scene, Style};
@@ -25,6 +26,16 @@ impl Made<'_> {
     fn palette(&self, field: usize, scene: &Scene) -> [&'static str; 3] {
         let field = &self.prepared.fields[field];
         paint::palette(&field.params.palette, scene.containers[field.container].fill.as_deref())
+    }
+
+    /// A warning if a fixed spine got no element.
+    fn bare_spines(&self) -> Option<String> {
+        let drawn: usize = self.prepared.fields.iter().map(|field| field.fixed_spines.len()).sum();
+        let carried = self.placed.iter().filter(|placed| placed.kind == LineKind::Fixed).count();
+        (carried < drawn).then(|| {
+            let bare = drawn - carried;
+            format!("{bare} of {drawn} fixed spines carry no element: there is no room beside them, or they run outside the container")
+        })
     }
 
     /// Counts for the report.
@@ -88,6 +99,7 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
     groups.retain(|group| !group.items.is_empty());
     let mut warnings = scene.warnings.clone();
     warnings.extend(prepared.warnings.iter().cloned());
+    warnings.extend(made.bare_spines());
     Artwork { groups, complete, warnings, counts: made.counts(), decimals }
 }
 

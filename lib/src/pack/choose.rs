@@ -116,7 +116,9 @@ fn limits(
             least = least.min(*scale);
         }
     }
-    if least.is_nan() || least <= SQUEEZE * along {
+    // On a line that the artist drew, a thin element is better than none.
+    let squeeze = if blob.kind == LineKind::Fixed { SQUEEZE / 8.0 } else { SQUEEZE };
+    if least.is_nan() || least <= squeeze * along {
         return None;
     }
     for scale in &mut scale {

@@ -7,7 +7,7 @@ use crate::geom::boolean::Contour;
 use crate::geom::distance::{covered, squared_distances};
 use crate::geom::flatten::flatten;
 use crate::geom::near::PointGrid;
-use kurbo::{BezPath, Circle, Point, Shape, Vec2};
+use kurbo::{BezPath, Circle, Point, Rect, Shape, Vec2};
 use std::collections::BinaryHeap;
 
 /// Places are looked at on a grid this fine, in spacings, and then moved to the middle.
@@ -120,11 +120,14 @@ fn fill_field(
     // A dot may move this far to the middle of its gap.
     let step = STEP * spacing;
     let reach = largest + field.sizes.safe_gap();
-    let mut cover = Cover::new(field, &placement.silhouettes);
+    let reach_box = field.region.bounds().inflate(spacing, spacing);
+    let near: Vec<Contour> =
+        placement.silhouettes.iter().filter(|contour| touches(contour, reach_box)).cloned().collect();
+    let mut cover = Cover::new(field, &near);
     let clearance = |placement: &Placement, cover: &Cover, at: Point| {
         if cover.contains(at) { -reach } else { clearance(field, placement, at, reach) }
     };
-    let mut heap = candidates(field, placement, &cover, smallest);
+    let mut heap = candidates(field, &near, &cover, smallest);
     const ASK_EVERY: usize = 256;
     let mut popped = 0;
     while let Some(place) = heap.pop() {
@@ -165,14 +168,14 @@ fn fill_field(
 
 /// The middles of the gaps between the elements, with an estimate of their clearance that is
 /// never too small, from the distance transform of all outlines.
-fn candidates(field: &Field, placement: &Placement, cover: &Cover, smallest: f64) -> BinaryHeap<Place> {
+fn candidates(field: &Field, silhouettes: &[Contour], cover: &Cover, smallest: f64) -> BinaryHeap<Place> {
     let (columns, step) = (cover.columns, cover.step);
     let distances = |contours: &[Contour]| {
         let mut marked = vec![false; cover.elements.len()];
         contours.iter().for_each(|contour| mark(contour, cover, &mut marked));
         squared_distances(&marked, columns)
     };
-    let to_elements = distances(&placement.silhouettes);
+    let to_elements = distances(silhouettes);
     let to_boundary = distances(field.region.contours());
     let inset = (field.sizes.gap - field.sizes.edge).max(0.0);
     let estimate =
@@ -191,6 +194,14 @@ fn candidates(field: &Field, placement: &Placement, cover: &Cover, smallest: f64
         }
     }
     heap
+}
+
+/// True if a contour's bounding box reaches into a box.
+fn touches(contour: &Contour, bounds: Rect) -> bool {
+    contour.first().is_some_and(|&first| {
+        let own = contour.iter().fold(Rect::from_points(first, first), |own, &p| own.union_pt(p));
+        own.overlaps(bounds)
+    })
 }
 
 /// Marks the cells that a contour passes.

@@ -45,7 +45,7 @@ use rinceau_format::{Artwork, Error, Scene};
 use template::Side;
 
 /// Elements of one run at most, estimated before anything is traced.
-pub const MOST_ELEMENTS: f64 = 50_000.0;
+pub const MOST_ELEMENTS: f64 = 20_000.0;
 
 /// Packs every container of a scene.
 ///
@@ -97,7 +97,15 @@ pub fn generate(
     if complete {
         (fillers, complete) = fill::fill(&prepared, &mut placement, |done| progress.step("fill", done));
     }
-    if placement.placed.is_empty() && complete {
+    if placement.placed.is_empty() && !complete {
+        // An empty layer would only take the place of an earlier, better one.
+        return Err(Error::new(
+            "out-of-time",
+            "The time ran out before any element was in its place",
+            "Allow more time, or make the elements wider",
+        ));
+    }
+    if placement.placed.is_empty() {
         return Err(Error::new(
             "nothing-fits",
             "No element fits into the shape",

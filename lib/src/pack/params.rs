@@ -85,8 +85,8 @@ impl Sizes {
         self.gap * (1.0 + ROUNDING) + 2.0 * self.tolerance()
     }
 
-    /// `area` is that of everything to be filled, `own` that of this container.
-    pub fn new(params: &Params, area: f64, own: f64, px_per_unit: f64) -> Self {
+    /// `area` is that of everything to be filled; then area and perimeter of this container.
+    pub fn new(params: &Params, area: f64, (own, perimeter): (f64, f64), px_per_unit: f64) -> Self {
         /// About this many elements fill the shapes when no width is given.
         const ELEMENTS: f64 = 60.0;
         let or = |length: Length, default: f64| {
@@ -98,7 +98,10 @@ impl Sizes {
         let all = (area / (ELEMENTS * ASPECT)).sqrt();
         // A small part of the drawing gets smaller elements, so that it holds some at all.
         const AT_LEAST: f64 = 7.0;
-        let spacing = or(params.spacing, all.min((own / (AT_LEAST * ASPECT)).sqrt()));
+        // And a thin one elements that fit across it: twice area over perimeter is the width of
+        // a strip, and half that of a disc, which this leaves alone.
+        let across = 2.2 * own / perimeter.max(f64::MIN_POSITIVE);
+        let spacing = or(params.spacing, all.min((own / (AT_LEAST * ASPECT)).sqrt()).min(across));
         let max_length = or(params.max_length, 4.0 * spacing);
         let min_length = or(params.min_length, 1.5 * spacing).min(max_length);
         let gap = or(params.min_gap, spacing / 8.0);

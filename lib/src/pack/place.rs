@@ -8,9 +8,10 @@
 use super::blob::Spine;
 use super::choose::{Pose, extent, fit};
 use super::params::Sizes;
-use super::prepare::{Field, Prepared, self_crossing};
+use super::prepare::{Field, Prepared, self_crossings};
 use super::refine::Body;
 use super::template::{BINS, Template};
+use crate::field::LineKind;
 use crate::geom::bend::Bend;
 use crate::geom::boolean::{Contour, area, is_outer, simplified};
 use crate::geom::flatten::flatten;
@@ -37,6 +38,7 @@ const TRIES: [(f64, f64); 9] = [
 pub(super) struct Placed {
     /// Index of its container's field.
     pub field: usize,
+    pub kind: LineKind,
     pub template: usize,
     /// The template's paths, bent.
     pub paths: Vec<BezPath>,
@@ -91,7 +93,7 @@ impl Placement {
         let along = (part.1 - part.0) * length / template.length;
         let scale = width * along * libm::exp(fit.distortion / 2.0);
         let stroke = template.stroke * scale;
-        let paths = bent(&template.outer, fit.pose, &bend, &field.sizes);
+        let paths = bent(&template.outer, fit.pose, &bend, FINER * field.sizes.tolerance());
         let outlines: Vec<Contour> = paths.iter().flat_map(|path| outlines(path, &field.sizes)).collect();
         let goes = self.keeps_apart(&outlines, stroke, field) && !folded(template, fit.pose, &bend);
         if goes {
@@ -115,8 +117,9 @@ impl Placement {
         let silhouette = silhouette(&outlines);
         self.placed.push(Placed {
             field: body.blob.field,
+            kind: body.blob.kind,
             template: body.fit.pose.template,
-            paths: bent(template.parts.iter().map(|(path, _)| path), body.fit.pose, bend, &field.sizes),
+            paths: unfolded(template, body.fit.pose, bend, &field.sizes),
             scale,
             centre: centre(&outlines),
             area: area(&silhouette),
@@ -194,18 +197,43 @@ fn silhouette(outlines: &[Contour]) -> Vec<Contour> {
     if outer.len() > 1 { simplified(&outer, false) } else { outer }
 }
 
+/// Curves are bent finer than the chords of the checks.
+const FINER: f64 = 0.25;
+
+/// The whole template bent into place. The map keeps the sides of the thinnest needle apart,
+/// but curves that are near the truth may cross where the truth does not by less than that; a
+/// drawn element is then bent finer.
+fn unfolded(template: &Template, pose: Pose, bend: &Bend, sizes: &Sizes) -> Vec<BezPath> {
+    const FINEST: f64 = 1e-6;
+    let mut share = FINER;
+    loop {
+        let tolerance = share * sizes.tolerance();
+        let paths = bent(template.parts.iter().map(|(path, _)| path), pose, bend, tolerance);
+        if template.builtin || template.crosses_itself || share < FINEST || !any_crossing(&paths, tolerance) {
+            return paths;
+        }
+        share /= 16.0;
+    }
+}
+
+/// True if a subpath crosses itself.
+pub(super) fn any_crossing(paths: &[BezPath], tolerance: f64) -> bool {
+    let mut subpaths = paths.iter().flat_map(|path| flatten(path, tolerance));
+    subpaths.any(|subpath| subpath.closed && !self_crossings(&subpath.points, 1).is_empty())
+}
+
 /// Paths of a template bent into place.
 fn bent<'a>(
     paths: impl IntoIterator<Item = &'a BezPath>,
     pose: Pose,
     bend: &Bend,
-    sizes: &Sizes,
+    tolerance: f64,
 ) -> Vec<BezPath> {
     let (u0, du) = if pose.along { (1.0, -1.0) } else { (0.0, 1.0) };
     let to_pose = Affine::new([du, 0.0, 0.0, if pose.across { -1.0 } else { 1.0 }, u0, 0.0]);
     let bend_one = |path: &BezPath| {
         let mut out = BezPath::new();
-        bend.path(&(to_pose * path.clone()), sizes.tolerance(), &mut out);
+        bend.path(&(to_pose * path.clone()), tolerance, &mut out);
         out
     };
     paths.into_iter().map(bend_one).collect()
@@ -228,7 +256,7 @@ fn folded(template: &Template, pose: Pose, bend: &Bend) -> bool {
     let mut right: Contour = side(1, -1.0).collect();
     right.reverse();
     strip.extend(right);
-    self_crossing(&strip).is_some()
+    !self_crossings(&strip, 1).is_empty()
 }
 
 fn centre(outlines: &[Contour]) -> Point {

@@ -5,6 +5,7 @@ use super::params::{Params, Sizes};
 use crate::geom::boolean::{self, Contour};
 use crate::geom::flatten::{Subpath, flatten};
 use crate::geom::near::{SegmentGrid, crosses};
+use crate::geom::polyline;
 use crate::geom::region::Region;
 use kurbo::{BezPath, Point, Rect, Shape};
 use rinceau_format::{Container, Error, FillRule, Fixed, Guide, Scene};
@@ -80,7 +81,9 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
         let own_area = areas[index];
         let overrides = container.overrides.iter().map(|(name, value)| (name.as_str(), value.as_str()));
         let own = params.overridden(overrides).map_err(|error| error.at(container.source.at))?;
-        let sizes = Sizes::new(&own, area, own_area, scene.px_per_unit);
+        let perimeter = shape.iter().map(|contour| polyline::length(&closed(contour))).sum();
+        let sizes = Sizes::new(&own, area, (own_area, perimeter), scene.px_per_unit);
+        check_gap(&sizes, container)?;
         // Fixed areas are kept clear by the gap, the outline by the edge distance.
         // Chords may lie on the wrong side of a curve by the tolerance.
         let distance = (sizes.gap - sizes.edge).max(0.0) + tolerance;
@@ -111,6 +114,23 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
         });
     }
     Ok(prepared)
+}
+
+/// A gap as wide as an element leaves no room for the element.
+fn check_gap(sizes: &Sizes, container: &Container) -> Result<(), Error> {
+    const MOST: f64 = 0.9;
+    if sizes.gap <= MOST * sizes.spacing {
+        return Ok(());
+    }
+    let sentence = format!(
+        "A gap of {:.4} leaves no room for elements {:.4} wide in '{}'",
+        sizes.gap, sizes.spacing, container.source.id
+    );
+    let remedy = format!(
+        "Set the gap (--min-gap) below {:.4}, or the element width (--spacing) higher",
+        MOST * sizes.spacing
+    );
+    Err(Error::new("gap-too-wide", sentence, remedy))
 }
 
 fn bounds_of(scene: &Scene) -> Rect {
@@ -152,11 +172,10 @@ fn silhouette(container: &Container, tolerance: f64) -> Result<Vec<Contour>, Err
             }
             contours.push(subpath.points);
         }
-        let even_odd = outline.rule == FillRule::EvenOdd;
-        let simple = boolean::simplified(&contours, even_odd);
         for contour in &contours {
             check_crossing(contour, container, tolerance)?;
         }
+        let simple = boolean::simplified(&contours, outline.rule == FillRule::EvenOdd);
         union = if union.is_empty() { simple } else { boolean::union(&union, &simple) };
     }
     let size = container
@@ -179,8 +198,22 @@ fn silhouette(container: &Container, tolerance: f64) -> Result<Vec<Contour>, Err
 /// A contour that crosses itself is refused where it says, because what is inside is then a
 /// guess; a loop of next to no area, as a hand-drawn line leaves where it closes, is not.
 fn check_crossing(contour: &Contour, container: &Container, tolerance: f64) -> Result<(), Error> {
-    let Some(at) = self_crossing(contour) else { return Ok(()) };
     const SMALL_LOOP: f64 = 2e-3;
+    // More crossings than a slip of the pen makes are not worth measuring.
+    const MOST_CROSSINGS: usize = 64;
+    let crossings = self_crossings(contour, MOST_CROSSINGS);
+    let Some(&at) = crossings.first() else { return Ok(()) };
+    let refused = container.source.error(
+        "crossing-container",
+        format!(
+            "The outline of the container '{}' crosses itself at {:.1},{:.1}",
+            container.source.id, at.x, at.y
+        ),
+        "Clean it with Path > Union, or move the nodes apart",
+    );
+    if crossings.len() >= MOST_CROSSINGS {
+        return Err(refused);
+    }
     let odd = boolean::area(&boolean::simplified(std::slice::from_ref(contour), true));
     let winding = boolean::area(&boolean::simplified(std::slice::from_ref(contour), false));
     let signed = boolean::signed_area(contour).abs();
@@ -188,38 +221,30 @@ fn check_crossing(contour: &Contour, container: &Container, tolerance: f64) -> R
     if loops <= SMALL_LOOP * winding || winding <= tolerance * tolerance {
         return Ok(());
     }
-    Err(container.source.error(
-        "crossing-container",
-        format!(
-            "The outline of the container '{}' crosses itself at {:.1},{:.1}",
-            container.source.id, at.x, at.y
-        ),
-        "Clean it with Path > Union, or move the nodes apart",
-    ))
+    Err(refused)
 }
 
-/// A place where a closed contour properly crosses itself.
-pub(super) fn self_crossing(contour: &Contour) -> Option<Point> {
-    let first = *contour.first()?;
-    let bounds = contour.iter().fold(Rect::from_points(first, first), |bounds, &p| bounds.union_pt(p));
+/// Places where a closed contour properly crosses itself, `most` of them at most.
+pub(super) fn self_crossings(contour: &Contour, most: usize) -> Vec<Point> {
+    let mut found = Vec::new();
+    let Some(bounds) = bounding_box(std::slice::from_ref(contour)) else { return found };
     let cell = bounds.width().max(bounds.height()) / (contour.len() as f64).sqrt().max(4.0);
     let mut grid = SegmentGrid::new(bounds, cell);
     grid.insert_contour(contour, 0);
     let mut previous = contour[contour.len() - 1];
     for &p in contour {
-        let mut found = None;
         grid.visit(previous, p, 0.0, |a, b, _| {
             if crosses(previous, p, a, b) {
-                found = Some(a.midpoint(b));
+                found.push(a.midpoint(b));
             }
-            found.is_none()
+            found.len() < most
         });
-        if found.is_some() {
-            return found;
+        if found.len() >= most {
+            break;
         }
         previous = p;
     }
-    None
+    found
 }
 
 fn may_touch(a: &[Contour], b: &[Contour]) -> bool {
@@ -284,6 +309,14 @@ fn closed(contour: &Contour) -> Vec<Point> {
 /// True if a polyline passes through a region or within `reach` of it.
 fn passes(line: &[Point], region: &Region, reach: f64) -> bool {
     line.windows(2).any(|pair| {
+        let mut across = false;
+        region.edges().visit(pair[0], pair[1], 0.0, |a, b, _| {
+            across = crosses(pair[0], pair[1], a, b);
+            !across
+        });
+        if across {
+            return true;
+        }
         let steps = ((pair[0].distance(pair[1]) / (region.bounds().size().max_side() / 64.0)).ceil()
             as usize)
             .clamp(1, 256);

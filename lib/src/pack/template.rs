@@ -1,5 +1,6 @@
 //! Elements and their LR functions (FLOWPAK 4.2, checklist F-020 to F-023).
 
+use super::place::any_crossing;
 use crate::geom::flatten::flatten;
 use crate::geom::polyline::left_of;
 use crate::geom::region::Region;
@@ -20,6 +21,8 @@ pub(super) struct Template {
     pub names: Vec<String>,
     /// Paths in (u, v): u from 0 to 1 along the spine, v in user units; and their paint.
     pub parts: Vec<(BezPath, Style)>,
+    /// An outline crosses itself as drawn. Not asked of built-in ones.
+    pub crosses_itself: bool,
     /// The subpaths that no other one encloses: what keeps apart from neighbours.
     pub outer: Vec<BezPath>,
     /// Largest extent on the side v > 0 and v < 0 in each bin of u.
@@ -102,6 +105,15 @@ impl Template {
                 "Draw its shapes around or beside the spine",
             ));
         }
+        // Beyond this the spine does not stand for the shapes at all.
+        const FARTHEST: f64 = 8.0;
+        if widest[0].max(widest[1]) > FARTHEST * (x1 - x0) {
+            return Err(source.error(
+                "far-element",
+                format!("The shapes of the element '{}' lie far from its spine", source.id),
+                "Draw the spine through them or along their edge, from base to tip",
+            ));
+        }
         // A half element may cross its spine by this share of its width: pen wobble.
         const HALF: f64 = 0.06;
         let side = if widest[1] <= HALF * widest[0] {
@@ -120,7 +132,9 @@ impl Template {
             .collect();
         let parts: Vec<(BezPath, Style)> =
             parts.into_iter().map(|(path, style, _)| (to_uv * path, style)).collect();
+        let paths: Vec<BezPath> = parts.iter().map(|(path, _)| path.clone()).collect();
         Ok(Template {
+            crosses_itself: !builtin && any_crossing(&paths, 1e-4),
             outer: outer(&parts),
             id: source.id.clone(),
             builtin,
