@@ -844,3 +844,15 @@ mod opened {
             && path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".rinceau-"))
     }
 }
+
+/// The same bytes for any number of threads.
+#[test]
+fn threads_do_not_show() {
+    let packed_with = |threads: &str| {
+        let mut command = std::process::Command::new(support::binary());
+        command.arg("pack").arg(&support::samples()[0]).env("RAYON_NUM_THREADS", threads);
+        support::Run::of(command).succeed().stdout
+    };
+    let one = packed_with("1");
+    assert!(one == packed_with("2") && one == packed_with("5"));
+}

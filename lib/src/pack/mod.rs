@@ -42,7 +42,7 @@ use blob::Blob;
 use place::Placement;
 use prepare::Prepared;
 use rinceau_format::{Artwork, Error, Scene};
-use template::Side;
+use template::{Side, Template};
 
 /// Elements of one run at most, estimated before anything is traced.
 pub const MOST_ELEMENTS: f64 = 20_000.0;
@@ -64,20 +64,7 @@ pub fn generate(
     let usable = prepared.fields.iter().map(|field| library::usable(&templates, field, scene));
     let usable = usable.collect::<Result<Vec<_>, _>>()?;
 
-    let mut complete = true;
-    let mut blobs: Vec<Blob> = Vec::new();
-    for (index, (field, usable)) in prepared.fields.iter().zip(&usable).enumerate() {
-        complete &= progress.step("field", index as f64 / prepared.fields.len() as f64);
-        let cell = (field.sizes.spacing / 4.0).min(prepared.input_size / 112.0);
-        let Some(flow) = DirectionField::new(&field.region, &field.guides, cell) else { continue };
-        let half_elements = usable.iter().any(|&t| templates[t].side != Side::Full);
-        progress.step("streamlines", 0.0);
-        let (lines, finished) =
-            lines::trace(field, &flow, half_elements, rng, |done| progress.step("streamlines", done));
-        complete &= finished;
-        progress.step("blobs", 0.0);
-        blobs.extend(blob::blobs(index, field, &flow, lines));
-    }
+    let (blobs, mut complete) = rooms(&prepared, &templates, &usable, rng, progress);
     let step = |done| progress.step("cast", done);
     let (mut bodies, finished) = cast::cast(&prepared, &templates, &usable, &blobs, &mut rng.fork(), step);
     complete &= finished;
@@ -97,20 +84,8 @@ pub fn generate(
     if complete {
         (fillers, complete) = fill::fill(&prepared, &mut placement, |done| progress.step("fill", done));
     }
-    if placement.placed.is_empty() && !complete {
-        // An empty layer would only take the place of an earlier, better one.
-        return Err(Error::new(
-            "out-of-time",
-            "The time ran out before any element was in its place",
-            "Allow more time, or make the elements wider",
-        ));
-    }
     if placement.placed.is_empty() {
-        return Err(Error::new(
-            "nothing-fits",
-            "No element fits into the shape",
-            "Make the element width or the shortest length smaller",
-        ));
+        return Err(nothing_placed(complete));
     }
     progress.step("artwork", 0.0);
     Ok(artwork::artwork(
@@ -124,6 +99,44 @@ pub fn generate(
         scene,
         complete,
     ))
+}
+
+/// Steps 3 and 4: a streamline for every element to be, and the room around each. False if the
+/// time ran out first.
+fn rooms(
+    prepared: &Prepared,
+    templates: &[Template],
+    usable: &[Vec<usize>],
+    rng: &mut Rng,
+    progress: &mut dyn Progress,
+) -> (Vec<Blob>, bool) {
+    // Finer cells than these change no direction that an element could follow.
+    const CELLS: f64 = 112.0;
+    let mut complete = true;
+    let mut blobs = Vec::new();
+    for (index, (field, usable)) in prepared.fields.iter().zip(usable).enumerate() {
+        complete &= progress.step("field", index as f64 / prepared.fields.len() as f64);
+        let cell = (field.sizes.spacing / 4.0).min(prepared.input_size / CELLS);
+        let Some(flow) = DirectionField::new(&field.region, &field.guides, cell) else { continue };
+        let half_elements = usable.iter().any(|&t| templates[t].side != Side::Full);
+        progress.step("streamlines", 0.0);
+        let (lines, finished) =
+            lines::trace(field, &flow, half_elements, rng, |done| progress.step("streamlines", done));
+        complete &= finished;
+        progress.step("blobs", 0.0);
+        blobs.extend(blob::blobs(index, field, &flow, lines));
+    }
+    (blobs, complete)
+}
+
+fn nothing_placed(complete: bool) -> Error {
+    if complete {
+        let remedy = "Make the element width or the shortest length smaller";
+        return Error::new("nothing-fits", "No element fits into the shape", remedy);
+    }
+    // An empty layer would only take the place of an earlier, better one.
+    let remedy = "Allow more time, or make the elements wider";
+    Error::new("out-of-time", "The time ran out before any element was in its place", remedy)
 }
 
 /// Counts the elements before anything is built.

@@ -72,48 +72,56 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
         .map(|shape| boolean::area(&boolean::difference(shape, &near(&fixed, shape, 0.0))))
         .collect();
     let area: f64 = areas.iter().sum();
-    let guides: Vec<(usize, Vec<Point>)> = polylines(&scene.guides, tolerance);
-    let spines: Vec<(usize, Vec<Point>)> = polylines(&scene.fixed_spines, tolerance);
+    let guides = polylines(&scene.guides, tolerance);
+    let spines = polylines(&scene.fixed_spines, tolerance);
     check_guides(&scene.guides, &guides, &shapes)?;
 
     let mut prepared = Prepared { fields: Vec::new(), input_size, bounds, area, warnings: Vec::new() };
     for (index, (container, shape)) in scene.containers.iter().zip(&shapes).enumerate() {
-        let own_area = areas[index];
         let overrides = container.overrides.iter().map(|(name, value)| (name.as_str(), value.as_str()));
         let own = params.overridden(overrides).map_err(|error| error.at(container.source.at))?;
         let perimeter = shape.iter().map(|contour| polyline::length(&closed(contour))).sum();
-        let sizes = Sizes::new(&own, area, (own_area, perimeter), scene.px_per_unit);
+        let sizes = Sizes::new(&own, area, (areas[index], perimeter), scene.px_per_unit);
         check_gap(&sizes, container)?;
-        // Fixed areas are kept clear by the gap, the outline by the edge distance.
-        // Chords may lie on the wrong side of a curve by the tolerance.
-        let distance = (sizes.gap - sizes.edge).max(0.0) + tolerance;
-        let clear = boolean::offset(&near(&fixed, shape, sizes.gap), distance);
-        let free = boolean::difference(shape, &clear);
-        let Some(region) = Region::new(boolean::offset(&free, -sizes.edge - tolerance)) else {
-            prepared.warnings.push(format!(
-                "The container '{}' is too small or too thin for anything to fit",
+        match region(shape, &fixed, &sizes, tolerance) {
+            Some(region) => {
+                prepared.fields.push(field(index, own, sizes, region, (&guides, &spines)));
+            }
+            None => prepared.warnings.push(format!(
+                "The container '{}' is too small or too thin for anything to fit, or lies under another",
                 container.source.id
-            ));
-            continue;
-        };
-        let inside = |line: &Vec<Point>| passes(line, &region, sizes.spacing / 2.0);
-        let own_guides: Vec<Vec<Point>> =
-            guides.iter().map(|(_, line)| line).filter(|line| inside(line)).cloned().collect();
-        let guided = !own_guides.is_empty();
-        let guides = if guided { own_guides } else { region.contours().iter().map(closed).collect() };
-        let fixed_spines =
-            spines.iter().map(|(_, line)| line).filter(|line| passes(line, &region, 0.0)).cloned().collect();
-        prepared.fields.push(Field {
-            container: index,
-            params: own,
-            sizes,
-            region,
-            guides,
-            guided,
-            fixed_spines,
-        });
+            )),
+        }
     }
     Ok(prepared)
+}
+
+/// Where elements may be: fixed areas are kept clear by the gap, the outline by the edge
+/// distance.
+fn region(shape: &[Contour], fixed: &[Contour], sizes: &Sizes, tolerance: f64) -> Option<Region> {
+    // Chords may lie on the wrong side of a curve by the tolerance.
+    let distance = (sizes.gap - sizes.edge).max(0.0) + tolerance;
+    let clear = boolean::offset(&near(fixed, shape, sizes.gap), distance);
+    let free = boolean::difference(shape, &clear);
+    Region::new(boolean::offset(&free, -sizes.edge - tolerance))
+}
+
+/// A region with the guides and fixed spines that pass through it.
+fn field(
+    container: usize,
+    params: Params,
+    sizes: Sizes,
+    region: Region,
+    (guides, spines): (&Lines, &Lines),
+) -> Field {
+    let through = |lines: &Lines, reach: f64| -> Vec<Vec<Point>> {
+        lines.iter().map(|(_, line)| line).filter(|line| passes(line, &region, reach)).cloned().collect()
+    };
+    let own_guides = through(guides, sizes.spacing / 2.0);
+    let fixed_spines = through(spines, 0.0);
+    let guided = !own_guides.is_empty();
+    let guides = if guided { own_guides } else { region.contours().iter().map(closed).collect() };
+    Field { container, params, sizes, region, guides, guided, fixed_spines }
 }
 
 /// A gap as wide as an element leaves no room for the element.
@@ -291,7 +299,10 @@ fn bounding_box(shape: &[Contour]) -> Option<Rect> {
     points.next().map(|&first| points.fold(Rect::from_points(first, first), |r, &p| r.union_pt(p)))
 }
 
-fn polylines(guides: &[Guide], tolerance: f64) -> Vec<(usize, Vec<Point>)> {
+/// Polylines, each with the index of the object it comes from.
+type Lines = Vec<(usize, Vec<Point>)>;
+
+fn polylines(guides: &[Guide], tolerance: f64) -> Lines {
     let mut lines = Vec::new();
     for (i, guide) in guides.iter().enumerate() {
         for subpath in flatten(&guide.path, tolerance) {

@@ -5,7 +5,7 @@ use crate::geom::flatten::flatten;
 use crate::geom::polyline::left_of;
 use crate::geom::region::Region;
 use kurbo::{Affine, BezPath, PathEl, Point, Rect};
-use rinceau_format::{Element, Error, Style};
+use rinceau_format::{Element, Error, Part, Source, Style};
 
 /// Bins of an LR function. The paper samples it at n = 100 places (4.2); a bin here holds the
 /// largest extent anywhere in it, so that fewer miss nothing, and every step is linear in them.
@@ -67,19 +67,8 @@ impl Template {
             -normal.dot(base.to_vec2()),
         ]);
         let spine_length = base.distance(tip);
-        let parts: Vec<(BezPath, Style, f64)> = element
-            .template
-            .parts
-            .iter()
-            .map(|part| {
-                let scale = part.transform.determinant().abs().sqrt();
-                (
-                    straight * part.transform * part.path.clone(),
-                    part.style.scaled(scale, 6),
-                    part.style.stroke_width().unwrap_or(0.0) * scale / 2.0,
-                )
-            })
-            .collect();
+        let parts: Vec<(BezPath, Style, f64)> =
+            element.template.parts.iter().map(|part| straightened(part, straight)).collect();
         let tolerance = spine_length / 1000.0;
         let outlines: Vec<Vec<Point>> = parts
             .iter()
@@ -98,31 +87,8 @@ impl Template {
         let stroke = parts.iter().map(|part| part.2).fold(0.0, f64::max);
         let extents = extents(&outlines, to_uv, stroke);
         let widest = [max(&extents[0]), max(&extents[1])];
-        if widest[0].max(widest[1]) <= 1e-6 * spine_length {
-            return Err(source.error(
-                "flat-element",
-                format!("The element '{}' has no width beside its spine", source.id),
-                "Draw its shapes around or beside the spine",
-            ));
-        }
-        // Beyond this the spine does not stand for the shapes at all.
-        const FARTHEST: f64 = 8.0;
-        if widest[0].max(widest[1]) > FARTHEST * (x1 - x0) {
-            return Err(source.error(
-                "far-element",
-                format!("The shapes of the element '{}' lie far from its spine", source.id),
-                "Draw the spine through them or along their edge, from base to tip",
-            ));
-        }
-        // A half element may cross its spine by this share of its width: pen wobble.
-        const HALF: f64 = 0.06;
-        let side = if widest[1] <= HALF * widest[0] {
-            Side::Left
-        } else if widest[0] <= HALF * widest[1] {
-            Side::Right
-        } else {
-            Side::Full
-        };
+        let half_width = widest[0].max(widest[1]);
+        check_width(source, half_width, x1 - x0)?;
         let names = element
             .sets
             .iter()
@@ -140,12 +106,51 @@ impl Template {
             builtin,
             names,
             parts,
-            half_width: widest[0].max(widest[1]),
+            half_width,
             extents,
             length: x1 - x0,
-            side,
+            side: Side::of(widest),
             stroke,
         })
+    }
+}
+
+/// A part beside a straight spine, its paint, and half its stroke width.
+fn straightened(part: &Part, straight: Affine) -> (BezPath, Style, f64) {
+    let scale = part.transform.determinant().abs().sqrt();
+    let path = straight * part.transform * part.path.clone();
+    (path, part.style.scaled(scale, 6), part.style.stroke_width().unwrap_or(0.0) * scale / 2.0)
+}
+
+/// Errors if there is nothing beside the spine, or nothing near it.
+fn check_width(source: &Source, half_width: f64, length: f64) -> Result<(), Error> {
+    // Beyond this the spine does not stand for the shapes at all.
+    const FARTHEST: f64 = 8.0;
+    let name = &source.id;
+    if half_width <= 1e-6 * length {
+        let sentence = format!("The element '{name}' has no width beside its spine");
+        return Err(source.error("flat-element", sentence, "Draw its shapes around or beside the spine"));
+    }
+    if half_width > FARTHEST * length {
+        let sentence = format!("The shapes of the element '{name}' lie far from its spine");
+        let remedy = "Draw the spine through them or along their edge, from base to tip";
+        return Err(source.error("far-element", sentence, remedy));
+    }
+    Ok(())
+}
+
+impl Side {
+    /// From the widest extents for v > 0 and v < 0.
+    fn of(widest: [f64; 2]) -> Self {
+        // A half element may cross its spine by this share of its width: pen wobble.
+        const HALF: f64 = 0.06;
+        if widest[1] <= HALF * widest[0] {
+            Side::Left
+        } else if widest[0] <= HALF * widest[1] {
+            Side::Right
+        } else {
+            Side::Full
+        }
     }
 }
 
