@@ -8,12 +8,13 @@
 use super::blob::Spine;
 use super::choose::{Pose, extent, fit};
 use super::params::Sizes;
-use super::prepare::{Field, Prepared, self_crossings};
+use super::prepare::{Field, Prepared};
 use super::refine::Body;
 use super::template::{BINS, Template};
 use crate::field::LineKind;
 use crate::geom::bend::Bend;
 use crate::geom::boolean::{Contour, area, is_outer, simplified};
+use crate::geom::crossing::{any_crossing, self_crossings};
 use crate::geom::flatten::flatten;
 use crate::geom::near::{SegmentGrid, crosses, segment_segment};
 use crate::geom::polyline;
@@ -214,12 +215,6 @@ fn unfolded(template: &Template, pose: Pose, bend: &Bend, sizes: &Sizes) -> Vec<
         }
         share /= 16.0;
     }
-}
-
-/// True if a subpath crosses itself.
-pub(super) fn any_crossing(paths: &[BezPath], tolerance: f64) -> bool {
-    let mut subpaths = paths.iter().flat_map(|path| flatten(path, tolerance));
-    subpaths.any(|subpath| subpath.closed && !self_crossings(&subpath.points, 1).is_empty())
 }
 
 /// Paths of a template bent into place.

@@ -3,8 +3,9 @@
 
 use super::params::{Params, Sizes};
 use crate::geom::boolean::{self, Contour};
+use crate::geom::crossing::self_crossings;
 use crate::geom::flatten::{Subpath, flatten};
-use crate::geom::near::{SegmentGrid, crosses};
+use crate::geom::near::crosses;
 use crate::geom::polyline;
 use crate::geom::region::Region;
 use kurbo::{BezPath, Point, Rect, Shape};
@@ -230,29 +231,6 @@ fn check_crossing(contour: &Contour, container: &Container, tolerance: f64) -> R
         return Ok(());
     }
     Err(refused)
-}
-
-/// Places where a closed contour properly crosses itself, `most` of them at most.
-pub(super) fn self_crossings(contour: &Contour, most: usize) -> Vec<Point> {
-    let mut found = Vec::new();
-    let Some(bounds) = bounding_box(std::slice::from_ref(contour)) else { return found };
-    let cell = bounds.width().max(bounds.height()) / (contour.len() as f64).sqrt().max(4.0);
-    let mut grid = SegmentGrid::new(bounds, cell);
-    grid.insert_contour(contour, 0);
-    let mut previous = contour[contour.len() - 1];
-    for &p in contour {
-        grid.visit(previous, p, 0.0, |a, b, _| {
-            if crosses(previous, p, a, b) {
-                found.push(a.midpoint(b));
-            }
-            found.len() < most
-        });
-        if found.len() >= most {
-            break;
-        }
-        previous = p;
-    }
-    found
 }
 
 fn may_touch(a: &[Contour], b: &[Contour]) -> bool {

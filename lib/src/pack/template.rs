@@ -1,6 +1,6 @@
 //! Elements and their LR functions (FLOWPAK 4.2, checklist F-020 to F-023).
 
-use super::place::any_crossing;
+use crate::geom::crossing::any_crossing;
 use crate::geom::flatten::flatten;
 use crate::geom::polyline::left_of;
 use crate::geom::region::Region;
