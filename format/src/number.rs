@@ -18,15 +18,46 @@ pub fn decimals_for(size: f64) -> usize {
 
 /// Appends `value` with at most `decimals` decimals: no exponent, no `-0`, no trailing zero.
 pub fn write_number(out: &mut String, value: f64, decimals: usize) {
+    const POWERS: [f64; 10] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
+    // Below this a scaled value is a whole number without loss.
+    const MOST: f64 = 9e15;
+    let scaled = POWERS.get(decimals).map_or(f64::INFINITY, |power| (value * power).round());
+    if scaled.abs() < MOST {
+        write_scaled(out, scaled as i64, decimals);
+        return;
+    }
     let start = out.len();
     let _ = write!(out, "{value:.decimals$}");
     if decimals > 0 {
         let kept = out[start..].trim_end_matches('0').trim_end_matches('.').len();
         out.truncate(start + kept);
     }
-    if &out[start..] == "-0" {
-        out.replace_range(start.., "0");
+}
+
+/// Appends a whole number divided by a power of ten: several times as fast as the general way,
+/// and most of what a layer consists of.
+fn write_scaled(out: &mut String, scaled: i64, decimals: usize) {
+    let mut digits = [0u8; 24];
+    let (mut at, mut rest, mut place) = (digits.len(), scaled.unsigned_abs(), 0);
+    let mut kept = false;
+    while rest > 0 || place <= decimals {
+        let digit = (rest % 10) as u8;
+        rest /= 10;
+        kept |= digit > 0 || place >= decimals;
+        if place == decimals && at < digits.len() {
+            at -= 1;
+            digits[at] = b'.';
+        }
+        if kept {
+            at -= 1;
+            digits[at] = b'0' + digit;
+        }
+        place += 1;
     }
+    if scaled < 0 {
+        out.push('-');
+    }
+    out.extend(digits[at..].iter().map(|&digit| char::from(digit)));
 }
 
 /// SVG path data in absolute commands.
@@ -72,6 +103,12 @@ mod tests {
         assert_eq!(show(1.2346, 3), "1.235");
         assert_eq!(show(100.0, 0), "100");
         assert_eq!(show(1e12, 2), "1000000000000");
+        assert_eq!(show(1e18, 2), "1000000000000000000");
+        assert_eq!(
+            (show(0.05, 3), show(-20.5, 1), show(1e-9, 9)),
+            ("0.05".into(), "-20.5".into(), "0.000000001".into())
+        );
+        assert_eq!((show(0.0, 3), show(-0.0, 0), show(1000.0, 3)), ("0".into(), "0".into(), "1000".into()));
         assert_eq!((decimals_for(800.0), decimals_for(8.0), decimals_for(1e9)), (3, 5, 0));
     }
 }

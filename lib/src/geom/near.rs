@@ -49,6 +49,20 @@ impl Cells {
         }
     }
 
+    /// Squared distance from a place to a cell. Cells of the border hold all that lies beyond.
+    fn distance_squared(&self, at: Point, index: usize) -> f64 {
+        let (column, row) = (index % self.columns, index / self.columns);
+        let apart = |at: f64, origin: f64, i: usize, count: usize| {
+            let low = origin + i as f64 * self.size;
+            let before = if i == 0 { 0.0 } else { low - at };
+            let after = if i + 1 == count { 0.0 } else { at - low - self.size };
+            before.max(after).max(0.0)
+        };
+        let (x, y) =
+            (apart(at.x, self.origin.x, column, self.columns), apart(at.y, self.origin.y, row, self.rows));
+        x * x + y * y
+    }
+
     /// Indices of the cells a box touches, row by row.
     fn covered(&self, low: Point, high: Point) -> impl Iterator<Item = usize> + use<> {
         let (c0, c1) = (self.column(low.x), self.column(high.x));
@@ -102,12 +116,54 @@ impl PointGrid {
     }
 }
 
+/// Points with an owner each that are all known from the start: packed cell by cell, so that
+/// the cells of a row are looked at in one run.
+#[derive(Clone, Debug)]
+pub struct PointTable {
+    cells: Cells,
+    /// Where the points of each cell start, and the end of the last.
+    starts: Vec<u32>,
+    points: Vec<(Point, u32)>,
+}
+
+impl PointTable {
+    /// A table over `bounds`; places outside fall into the border cells.
+    pub fn new(bounds: Rect, cell: f64, points: &[(Point, u32)]) -> Self {
+        let cells = Cells::new(bounds, cell);
+        let mut starts = vec![0; cells.columns * cells.rows + 1];
+        points.iter().for_each(|&(p, _)| starts[cells.index(p) + 1] += 1);
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut next = starts.clone();
+        let mut packed = vec![(Point::ZERO, 0); points.len()];
+        for &(p, owner) in points {
+            let at = &mut next[cells.index(p)];
+            packed[*at as usize] = (p, owner);
+            *at += 1;
+        }
+        PointTable { cells, starts, points: packed }
+    }
+
+    /// The points within `radius`, and some beyond.
+    pub fn near(&self, at: Point, radius: f64) -> impl Iterator<Item = (Point, u32)> + '_ {
+        let (c0, c1) = (self.cells.column(at.x - radius), self.cells.column(at.x + radius));
+        let rows = self.cells.row(at.y - radius)..=self.cells.row(at.y + radius);
+        rows.flat_map(move |row| {
+            let start = row * self.cells.columns;
+            let (from, to) = (self.starts[start + c0], self.starts[start + c1 + 1]);
+            self.points[from as usize..to as usize].iter().copied()
+        })
+    }
+}
+
 /// Segments with an owner each, to be found by place.
 #[derive(Clone, Debug)]
 pub struct SegmentGrid {
     cells: Cells,
-    segments: Vec<(Point, Point, u32)>,
-    content: Vec<Vec<u32>>,
+    /// In every cell that a segment's box touches, the segment itself: looking it up by a
+    /// number would cost more than the copies.
+    content: Vec<Vec<(Point, Point, u32)>>,
 }
 
 impl SegmentGrid {
@@ -115,16 +171,14 @@ impl SegmentGrid {
     pub fn new(bounds: Rect, cell: f64) -> Self {
         let cells = Cells::new(bounds, cell);
         let content = vec![Vec::new(); cells.columns * cells.rows];
-        SegmentGrid { cells, segments: Vec::new(), content }
+        SegmentGrid { cells, content }
     }
 
     /// Adds a segment.
     pub fn insert(&mut self, a: Point, b: Point, owner: u32) {
-        let id = self.segments.len() as u32;
-        self.segments.push((a, b, owner));
         let (low, high) = (Point::new(a.x.min(b.x), a.y.min(b.y)), Point::new(a.x.max(b.x), a.y.max(b.y)));
         for index in self.cells.covered(low, high) {
-            self.content[index].push(id);
+            self.content[index].push((a, b, owner));
         }
     }
 
@@ -144,8 +198,7 @@ impl SegmentGrid {
         let low = Point::new(a.x.min(b.x) - radius, a.y.min(b.y) - radius);
         let high = Point::new(a.x.max(b.x) + radius, a.y.max(b.y) + radius);
         for index in self.cells.covered(low, high) {
-            for &id in &self.content[index] {
-                let (p, q, owner) = self.segments[id as usize];
+            for &(p, q, owner) in &self.content[index] {
                 if !visit(p, q, owner) {
                     return;
                 }
@@ -167,8 +220,11 @@ impl SegmentGrid {
                 break;
             }
             self.cells.ring(column, row, ring, |index| {
-                for &id in &self.content[index] {
-                    let (p, q, _) = self.segments[id as usize];
+                let content = &self.content[index];
+                if content.is_empty() || self.cells.distance_squared(at, index) >= best {
+                    return;
+                }
+                for &(p, q, _) in content {
                     best = best.min(point_segment_squared(at, p, q));
                 }
             });
@@ -249,6 +305,21 @@ mod tests {
     use super::*;
     use crate::rng::Rng;
     use kurbo::Vec2;
+
+    #[test]
+    fn a_table_finds_every_point_in_reach() {
+        let mut rng = Rng::new(3);
+        let points: Vec<(Point, u32)> =
+            (0..300).map(|i| (Point::new(rng.between(-5.0, 105.0), rng.between(-5.0, 105.0)), i)).collect();
+        let table = PointTable::new(Rect::new(0.0, 0.0, 100.0, 100.0), 7.0, &points);
+        for &(at, _) in &points {
+            let within = |&(p, _): &(Point, u32)| p.distance(at) < 11.0;
+            let mut found: Vec<u32> = table.near(at, 11.0).filter(within).map(|(_, owner)| owner).collect();
+            found.sort_unstable();
+            let brute: Vec<u32> = points.iter().filter(|p| within(p)).map(|&(_, owner)| owner).collect();
+            assert_eq!(found, brute);
+        }
+    }
 
     #[test]
     fn distances_and_rays_agree_with_brute_force() {

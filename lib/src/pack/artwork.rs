@@ -8,6 +8,7 @@ use super::template::Template;
 use crate::field::LineKind;
 use crate::geom::polyline;
 use kurbo::{Affine, BezPath, Point};
+use rayon::prelude::*;
 use rinceau_format::{Artwork, Group, Item, Part, Scene, Style};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -62,16 +63,21 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
     let tones = paint::assign(made.placed, 2.6 * spacing);
     let mut elements = Group { name: "elements".into(), ..Group::default() };
     let mut spines = Group { name: "spines".into(), hidden: true, ..Group::default() };
-    for (placed, tone) in made.placed.iter().zip(tones) {
+    // Bent finely only now, when it is known what stays, and on all cores.
+    let bend = |placed: &Placed| {
+        placed.paths(&made.templates[placed.template], &prepared.fields[placed.field].sizes)
+    };
+    let bent: Vec<Vec<BezPath>> = made.placed.par_iter().map(bend).collect();
+    for ((placed, tone), paths) in made.placed.iter().zip(tones).zip(bent) {
         let template = &made.templates[placed.template];
         let palette = made.palette(placed.field, scene);
-        let parts = template.parts.iter().zip(&placed.paths).map(|((_, style), path)| {
+        let parts = template.parts.iter().zip(paths).map(|((_, style), path)| {
             let style = if template.builtin {
                 painted(style, palette[tone])
             } else {
                 style.scaled(placed.scale, decimals)
             };
-            Part { path: path.clone(), transform: Affine::IDENTITY, style }
+            Part { path, transform: Affine::IDENTITY, style }
         });
         elements.items.push(Item { of: template.id.clone(), parts: parts.collect() });
         spines.items.push(spine_item(&placed.spine));

@@ -9,6 +9,7 @@ use super::template::{self, Template};
 use crate::geom::near::{PointGrid, point_segment};
 use crate::rng::Rng;
 use kurbo::Point;
+use rayon::prelude::*;
 
 /// Chooses for every blob, in order. Blobs that no element fits get none. False if the time
 /// ran out first.
@@ -23,27 +24,43 @@ pub(super) fn cast(
     let spacing = prepared.fields.iter().map(|field| field.sizes.spacing).fold(f64::INFINITY, f64::min);
     let mut neighbours = Neighbours::new(prepared, spacing);
     let mut bodies = Vec::new();
-    for (index, blob) in blobs.iter().enumerate() {
-        if !go_on(index as f64 / blobs.len() as f64) {
+    // Trials need no neighbours and are made on all cores, some blobs ahead.
+    const AHEAD: usize = 256;
+    for (index, blobs_ahead) in blobs.chunks(AHEAD).enumerate() {
+        if !go_on((index * AHEAD) as f64 / blobs.len() as f64) {
             return (bodies, false);
         }
-        let field = &prepared.fields[blob.field];
-        if let Some(trial) = best(templates, &usable[blob.field], blob, field, &neighbours, rng) {
-            let template = &templates[trial.pose.template];
-            let part = choose::trimmed(template, trial, blob, field.sizes.min_length, &field.params);
-            if let Some(body) = Body::new(blob, trial.pose, part, template, field) {
+        let trials = |blob: &Blob| trials(templates, &usable[blob.field], blob, &prepared.fields[blob.field]);
+        let tried: Vec<Vec<Trial>> = blobs_ahead.par_iter().map(trials).collect();
+        let mut chosen = Vec::with_capacity(tried.len());
+        for (blob, tried) in blobs_ahead.iter().zip(tried) {
+            if let Some(trial) = best(&tried, blob, &prepared.fields[blob.field], &neighbours, rng) {
                 neighbours.add(blob, trial.pose.template);
-                bodies.push(body);
+                chosen.push((blob, trial));
             }
         }
+        let body = |(blob, trial): (&Blob, Trial)| {
+            let (field, template) = (&prepared.fields[blob.field], &templates[trial.pose.template]);
+            let part = choose::trimmed(template, trial, blob, field.sizes.min_length, &field.params);
+            Body::new(blob, trial.pose, part, template, field)
+        };
+        let made: Vec<Option<Body>> = chosen.into_par_iter().map(body).collect();
+        bodies.extend(made.into_iter().flatten());
     }
     (bodies, true)
 }
 
-/// The best candidate for a blob.
+/// Every pose that a blob has room for.
+fn trials(templates: &[Template], usable: &[usize], blob: &Blob, field: &Field) -> Vec<Trial> {
+    choose::poses(templates, usable, blob)
+        .into_iter()
+        .filter_map(|pose| choose::trial(&templates[pose.template], pose, blob, (0.0, 1.0), &field.params))
+        .collect()
+}
+
+/// The best trial for a blob.
 fn best(
-    templates: &[Template],
-    usable: &[usize],
+    tried: &[Trial],
     blob: &Blob,
     field: &Field,
     neighbours: &Neighbours,
@@ -53,13 +70,9 @@ fn best(
     let room: f64 = blob.room.iter().flatten().sum::<f64>() * bin;
     let reversed = field.guided && field.params.sense == "arrow" && runs_against(blob, &field.guides);
     let mut best: Option<(f64, Trial)> = None;
-    for pose in choose::poses(templates, usable, blob) {
-        let Some(trial) = choose::trial(&templates[pose.template], pose, blob, (0.0, 1.0), &field.params)
-        else {
-            continue;
-        };
-        let against = field.guided && field.params.sense == "arrow" && pose.along != reversed;
-        let repeats = neighbours.repeats(blob, pose.template);
+    for &trial in tried {
+        let against = field.guided && field.params.sense == "arrow" && trial.pose.along != reversed;
+        let repeats = neighbours.repeats(blob, trial.pose.template);
         let score = score(&trial, room, repeats, against, &field.params)
             + rng.between(0.0, 0.06 * field.params.variety);
         if best.as_ref().is_none_or(|(other, _)| score > *other) {

@@ -11,7 +11,7 @@ use kurbo::{BezPath, Circle, Point, Rect, Shape, Vec2};
 use std::collections::BinaryHeap;
 
 /// Places are looked at on a grid this fine, in spacings, and then moved to the middle.
-const STEP: f64 = 1.0 / 18.0;
+const STEP: f64 = 1.0 / 13.0;
 /// Radii in spacings: smaller reads as dust, larger as an element of another family.
 const SMALLEST: f64 = 0.09;
 const LARGEST: f64 = 0.21;
@@ -55,6 +55,9 @@ struct Cover {
     columns: usize,
     rows: usize,
     elements: Vec<bool>,
+    /// True for cells that are sure to lie in the region, farther from its edge than any
+    /// distance asked for.
+    inner: Vec<bool>,
     dots: PointGrid,
     radii: Vec<f64>,
 }
@@ -66,18 +69,34 @@ impl Cover {
         let (columns, rows) = ((bounds.width() / step) as usize + 1, (bounds.height() / step) as usize + 1);
         let dots = PointGrid::new(bounds, 2.0 * LARGEST * field.sizes.spacing);
         let elements = covered(silhouettes, bounds.origin(), step, columns, rows);
-        Cover { origin: bounds.origin(), step, columns, rows, elements, dots, radii: Vec::new() }
+        Cover {
+            origin: bounds.origin(),
+            step,
+            columns,
+            rows,
+            elements,
+            inner: Vec::new(),
+            dots,
+            radii: Vec::new(),
+        }
     }
 
     /// True for what is covered. Nearer to an outline than a cell is wide the answer may be
     /// that of its other side, but no dot goes so near to one.
     fn contains(&self, at: Point) -> bool {
+        let largest = LARGEST * self.step / STEP;
+        self.cell(at).is_none_or(|cell| self.elements[cell])
+            || self.dots.any_within(at, largest, |centre, dot| centre.distance(at) < self.radii[dot as usize])
+    }
+
+    fn cell(&self, at: Point) -> Option<usize> {
         let (x, y) = ((at.x - self.origin.x) / self.step, (at.y - self.origin.y) / self.step);
         let inside_grid = x >= 0.0 && y >= 0.0 && (x as usize) < self.columns && (y as usize) < self.rows;
-        let largest = LARGEST * self.step / STEP;
-        !inside_grid
-            || self.elements[y as usize * self.columns + x as usize]
-            || self.dots.any_within(at, largest, |centre, dot| centre.distance(at) < self.radii[dot as usize])
+        inside_grid.then(|| y as usize * self.columns + x as usize)
+    }
+
+    fn is_inner(&self, at: Point) -> bool {
+        self.cell(at).is_some_and(|cell| self.inner[cell])
     }
 
     fn middle(&self, cell: usize) -> Point {
@@ -125,9 +144,9 @@ fn fill_field(
         placement.silhouettes.iter().filter(|contour| touches(contour, reach_box)).cloned().collect();
     let mut cover = Cover::new(field, &near);
     let clearance = |placement: &Placement, cover: &Cover, at: Point| {
-        if cover.contains(at) { -reach } else { clearance(field, placement, at, reach) }
+        if cover.contains(at) { -reach } else { clearance(field, placement, cover, at, reach) }
     };
-    let mut heap = candidates(field, &near, &cover, smallest);
+    let mut heap = candidates(field, &near, &mut cover, smallest, reach);
     const ASK_EVERY: usize = 256;
     let mut popped = 0;
     while let Some(place) = heap.pop() {
@@ -168,15 +187,25 @@ fn fill_field(
 
 /// The middles of the gaps between the elements, with an estimate of their clearance that is
 /// never too small, from the distance transform of all outlines.
-fn candidates(field: &Field, silhouettes: &[Contour], cover: &Cover, smallest: f64) -> BinaryHeap<Place> {
+/// Notes what is far inside the region.
+fn candidates(
+    field: &Field,
+    silhouettes: &[Contour],
+    cover: &mut Cover,
+    smallest: f64,
+    reach: f64,
+) -> BinaryHeap<Place> {
     let (columns, step) = (cover.columns, cover.step);
     let distances = |contours: &[Contour]| {
         let mut marked = vec![false; cover.elements.len()];
         contours.iter().for_each(|contour| mark(contour, cover, &mut marked));
         squared_distances(&marked, columns)
     };
-    let to_elements = distances(silhouettes);
-    let to_boundary = distances(field.region.contours());
+    let (to_elements, to_boundary) =
+        rayon::join(|| distances(silhouettes), || distances(field.region.contours()));
+    let far = (reach / step + 2.0).powi(2);
+    let in_region = covered(field.region.contours(), cover.origin, step, columns, cover.rows);
+    cover.inner = in_region.into_iter().zip(&to_boundary).map(|(inside, &d)| inside && d > far).collect();
     let inset = (field.sizes.gap - field.sizes.edge).max(0.0);
     let estimate =
         |i: usize| (to_elements[i].sqrt() * step - field.sizes.gap).min(to_boundary[i].sqrt() * step - inset);
@@ -227,11 +256,14 @@ fn mark(contour: &[Point], cover: &Cover, marked: &mut [bool]) {
 
 /// Free radius of a dot at a place: to the elements less the gap, to the boundary in full.
 /// Negative outside.
-fn clearance(field: &Field, placement: &Placement, at: Point, reach: f64) -> f64 {
+fn clearance(field: &Field, placement: &Placement, cover: &Cover, at: Point, reach: f64) -> f64 {
+    let to_elements = placement.distance(at, reach) - field.sizes.safe_gap();
+    if cover.is_inner(at) {
+        return to_elements;
+    }
     if !field.region.contains(at) {
         return -reach;
     }
-    let to_elements = placement.distance(at, reach) - field.sizes.safe_gap();
     // The outline of the shape wants the same distance as an element does.
     let inset = (field.sizes.gap - field.sizes.edge).max(0.0);
     to_elements.min(field.region.distance(at, reach) - inset)

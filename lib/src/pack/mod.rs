@@ -71,17 +71,11 @@ pub fn generate(
     let step = |done| progress.step("refine", done);
     complete &= refine::refine(&mut bodies, &templates, &prepared, step);
     let mut placement = Placement::new(&prepared);
-    for (index, body) in bodies.iter().enumerate() {
-        if !progress.step("place", index as f64 / bodies.len() as f64) && index > 0 {
-            complete = false;
-            break;
-        }
-        let field = &prepared.fields[body.blob.field];
-        placement.place(body, &templates[body.fit.pose.template], field);
-    }
+    complete &= placement.place(&bodies, &templates, &prepared, |done| progress.step("place", done));
     // Out of time, dots would fill what elements should have.
     let mut fillers = Vec::new();
     if complete {
+        progress.step("fill", 0.0);
         (fillers, complete) = fill::fill(&prepared, &mut placement, |done| progress.step("fill", done));
     }
     if placement.placed.is_empty() {

@@ -19,13 +19,14 @@ use crate::geom::flatten::flatten;
 use crate::geom::near::{SegmentGrid, crosses, segment_segment};
 use crate::geom::polyline;
 use kurbo::{Affine, BezPath, Point};
+use rayon::prelude::*;
 
 /// Widths, and shares of the length given up at both ends, tried one after the other until
 /// the outline keeps its distances. What is in the way is mostly ahead of a tip.
 const TRIES: [(f64, f64); 9] = [
     (1.0, 0.0),
-    (0.97, 0.0),
     (1.0, 0.025),
+    (0.97, 0.0),
     (0.94, 0.05),
     (0.88, 0.08),
     (0.8, 0.1),
@@ -41,13 +42,32 @@ pub(super) struct Placed {
     pub field: usize,
     pub kind: LineKind,
     pub template: usize,
-    /// The template's paths, bent.
-    pub paths: Vec<BezPath>,
+    pose: Pose,
+    bend: Bend,
     /// Mean scale, for stroke widths.
     pub scale: f64,
     pub centre: Point,
     pub area: f64,
     pub spine: Vec<Point>,
+}
+
+impl Placed {
+    /// The template's paths, bent.
+    pub fn paths(&self, template: &Template, sizes: &Sizes) -> Vec<BezPath> {
+        unfolded(template, self.pose, &self.bend, sizes)
+    }
+}
+
+/// An element bent by one of the tries, before it is known whether it goes there.
+struct Candidate {
+    pose: Pose,
+    bend: Bend,
+    scale: f64,
+    /// Half stroke width.
+    stroke: f64,
+    outlines: Vec<Contour>,
+    /// Outer contours alone; empty until it is known that the candidate goes.
+    silhouette: Vec<Contour>,
 }
 
 /// Everything placed so far.
@@ -72,59 +92,74 @@ impl Placement {
         }
     }
 
-    /// Places an element as wide as it goes. False if it does not go at all.
-    pub fn place(&mut self, body: &Body, template: &Template, field: &Field) -> bool {
-        TRIES.into_iter().any(|(width, cut)| self.try_place(body, (width, cut), template, field))
-    }
-
-    fn try_place(
+    /// Places the elements in order, each as wide as it goes; those that do not go at all are
+    /// left out. False if the time ran out first; one is placed all the same.
+    pub fn place(
         &mut self,
-        body: &Body,
-        (width, cut): (f64, f64),
-        template: &Template,
-        field: &Field,
+        bodies: &[Body],
+        templates: &[Template],
+        prepared: &Prepared,
+        mut go_on: impl FnMut(f64) -> bool,
     ) -> bool {
-        let (part, length) = ((cut, 1.0 - cut), body.blob.length);
-        let line = polyline::between(&body.blob.points, part.0 * length, part.1 * length);
-        let spine = Spine::new(&line, field.sizes.spacing);
-        let fitted = fit(template, body.fit.pose, &body.blob, part, &spine.curvature, &field.params);
-        let Some(fit) = fitted else { return false };
-        let bend = spine.bend(fit.width.map(|side| side.scaled(width)), template);
-        // The geometric mean of the scales along and across, for stroke widths.
-        let along = (part.1 - part.0) * length / template.length;
-        let scale = width * along * libm::exp(fit.distortion / 2.0);
-        let stroke = template.stroke * scale;
-        let paths = bent(&template.outer, fit.pose, &bend, FINER * field.sizes.tolerance());
-        let outlines: Vec<Contour> = paths.iter().flat_map(|path| outlines(path, &field.sizes)).collect();
-        let goes = self.keeps_apart(&outlines, stroke, field) && !folded(template, fit.pose, &bend);
-        if goes {
-            self.accept(body, template, &bend, (scale, stroke), outlines, field);
+        // Most of the work is done for the next few elements at once, on all cores: the first
+        // try that keeps its distance from everything before them. What they do to each other
+        // is settled in order.
+        const AHEAD: usize = 64;
+        // Neighbours follow each other in the list, so each round takes one in so many.
+        let rounds = bodies.len().div_ceil(AHEAD);
+        for round in 0..rounds {
+            if !go_on(round as f64 / rounds as f64) && round > 0 {
+                return false;
+            }
+            let ahead: Vec<&Body> = bodies.iter().skip(round).step_by(rounds).collect();
+            let context =
+                |body: &Body| (&templates[body.fit.pose.template], &prepared.fields[body.blob.field]);
+            let from = |placement: &Placement, body: &Body, from: usize| {
+                let (template, field) = context(body);
+                (from..TRIES.len()).find_map(|i| {
+                    let mut candidate = candidate(body, TRIES[i], template, field)?;
+                    let goes = placement.goes(&candidate, template, field);
+                    candidate.silhouette = if goes { silhouette(&candidate.outlines) } else { Vec::new() };
+                    goes.then_some((i, candidate))
+                })
+            };
+            let firsts: Vec<_> = ahead.par_iter().map(|body| from(self, body, 0)).collect();
+            for (body, first) in ahead.into_iter().zip(firsts) {
+                let settled = first.and_then(|(i, candidate)| {
+                    // It has been checked against the rest already.
+                    if self.keeps_apart(&candidate.outlines, candidate.stroke, context(body).1) {
+                        return Some(candidate);
+                    }
+                    from(self, body, i + 1).map(|(_, candidate)| candidate)
+                });
+                if let Some(candidate) = settled {
+                    self.accept(body, candidate);
+                }
+            }
         }
-        goes
+        true
     }
 
-    fn accept(
-        &mut self,
-        body: &Body,
-        template: &Template,
-        bend: &Bend,
-        (scale, stroke): (f64, f64),
-        outlines: Vec<Contour>,
-        field: &Field,
-    ) {
+    fn goes(&self, candidate: &Candidate, template: &Template, field: &Field) -> bool {
+        self.keeps_apart(&candidate.outlines, candidate.stroke, field)
+            && !folded(template, candidate.pose, &candidate.bend)
+    }
+
+    fn accept(&mut self, body: &Body, candidate: Candidate) {
+        let Candidate { pose, bend, scale, stroke, outlines, silhouette } = candidate;
         let owner = self.strokes.len() as u32;
         outlines.iter().for_each(|outline| self.outlines.insert_contour(outline, owner));
         self.strokes.push(stroke);
-        let silhouette = silhouette(&outlines);
         self.placed.push(Placed {
             field: body.blob.field,
             kind: body.blob.kind,
-            template: body.fit.pose.template,
-            paths: unfolded(template, body.fit.pose, bend, &field.sizes),
+            template: pose.template,
+            pose,
             scale,
             centre: centre(&outlines),
             area: area(&silhouette),
             spine: (0..=24).map(|i| bend.spine.jet(f64::from(i) / 24.0).p).collect(),
+            bend,
         });
         self.silhouettes.extend(silhouette);
     }
@@ -160,6 +195,28 @@ impl Placement {
             clear
         })
     }
+}
+
+/// An element bent as one of the tries says. `None` if it does not fit its own room then.
+fn candidate(body: &Body, (width, cut): (f64, f64), template: &Template, field: &Field) -> Option<Candidate> {
+    let (part, length) = ((cut, 1.0 - cut), body.blob.length);
+    let line = polyline::between(&body.blob.points, part.0 * length, part.1 * length);
+    let spine = Spine::new(&line, field.sizes.spacing);
+    let fit = fit(template, body.fit.pose, &body.blob, part, &spine.curvature, &field.params)?;
+    let bend = spine.bend(fit.width.map(|side| side.scaled(width)), template);
+    // The geometric mean of the scales along and across, for stroke widths.
+    let along = (part.1 - part.0) * length / template.length;
+    let scale = width * along * libm::exp(fit.distortion / 2.0);
+    let paths = bent(&template.outer, fit.pose, &bend, FINER * field.sizes.tolerance());
+    let outlines = paths.iter().flat_map(|path| outlines(path, &field.sizes)).collect();
+    Some(Candidate {
+        pose: fit.pose,
+        bend,
+        scale,
+        stroke: template.stroke * scale,
+        outlines,
+        silhouette: Vec::new(),
+    })
 }
 
 /// True if an outline lies in the region, `margin` from its edge.

@@ -18,7 +18,7 @@ use super::choose::{self, Fit, Pose};
 use super::prepare::{Field, Prepared};
 use super::template::{BINS, Side, Template};
 use crate::field::LineKind;
-use crate::geom::near::PointGrid;
+use crate::geom::near::PointTable;
 use crate::geom::polyline::{self, left_of};
 use kurbo::Point;
 use rayon::prelude::*;
@@ -150,7 +150,7 @@ fn shape(spine: Spine, fit: &Fit, template: &Template) -> Shape {
 
 /// Envelopes of all bodies, to ask how far the next one is.
 struct Neighbourhood {
-    grid: PointGrid,
+    outlines: PointTable,
     areas: Vec<f64>,
     reach: f64,
 }
@@ -159,33 +159,37 @@ impl Neighbourhood {
     fn new(bodies: &[Body], prepared: &Prepared) -> Self {
         let largest = |f: fn(&Field) -> f64| prepared.fields.iter().map(f).fold(0.0, f64::max);
         let reach = largest(|field| field.sizes.gap) + 0.5 * largest(|field| field.sizes.spacing);
-        let mut grid = PointGrid::new(prepared.bounds, reach / 2.0);
-        for (i, body) in bodies.iter().enumerate() {
-            for &p in body.shape.sides.iter().flatten().chain(&body.shape.tips) {
-                grid.insert(p, i as u32);
-            }
-        }
-        Neighbourhood { grid, areas: bodies.iter().map(|body| body.fit.area).collect(), reach }
+        let samples = |(i, body): (usize, &Body)| {
+            let outline = body.shape.sides.iter().flatten().chain(&body.shape.tips);
+            outline.map(|&p| (p, i as u32)).collect::<Vec<_>>()
+        };
+        let samples: Vec<(Point, u32)> = bodies.iter().enumerate().flat_map(samples).collect();
+        let outlines = PointTable::new(prepared.bounds, reach / 3.0, &samples);
+        Neighbourhood { outlines, areas: bodies.iter().map(|body| body.fit.area).collect(), reach }
     }
 
     /// How far a point of body `own` may move: its share of the space to the next body, and
     /// all of that to the boundary. Negative where the gap is not kept.
     fn allowance(&self, own: usize, at: Point, field: &Field, near_edge: bool) -> f64 {
         let gap = field.sizes.safe_gap();
-        let (mut nearest, mut whose) = (self.reach, None);
-        self.grid.visit(at, self.reach, |p, other| {
-            if other as usize != own {
-                let distance = p.distance(at);
-                if distance < nearest {
-                    (nearest, whose) = (distance, Some(other as usize));
-                }
+        let (mut nearest, mut whose) = (self.reach * self.reach, None);
+        for (p, other) in self.outlines.near(at, self.reach) {
+            let distance = p.distance_squared(at);
+            if distance < nearest && other as usize != own {
+                (nearest, whose) = (distance, Some(other as usize));
             }
-            true
-        });
+        }
+        nearest = nearest.sqrt();
         let share = whose.map_or(1.0, |other| {
             let part = self.areas[other] / (self.areas[own] + self.areas[other]).max(f64::MIN_POSITIVE);
             part.clamp(0.3, 0.7)
         });
+        // The nearest point of an outline lies between two of its samples, which are about a
+        // gap apart: up to half a gap from one of them.
+        const BETWEEN: f64 = 0.2;
+        if whose.is_some() {
+            nearest = (nearest * nearest - BETWEEN * gap * gap).max(0.0).sqrt();
+        }
         let to_bodies = (nearest - gap) * share;
         if !near_edge {
             return to_bodies;
