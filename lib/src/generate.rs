@@ -4,6 +4,7 @@ use crate::pack;
 use crate::params::{ParamSpec, Values};
 use crate::progress::Progress;
 use crate::rng::Rng;
+use crate::vine;
 use rinceau_format::{Artwork, Error, Scene};
 
 /// A generator: its name, what a menu calls it, and its parameters.
@@ -23,15 +24,26 @@ pub struct Generator {
 type Run = fn(&Values, &Scene, &mut Rng, &mut dyn Progress) -> Result<Artwork, Error>;
 
 /// Every generator, in menu order.
-pub const GENERATORS: &[Generator] = &[Generator {
-    name: "pack",
-    title: "Pack along flow",
-    about: "Fill shapes with leaves, drops or your own elements that bend along a flow",
-    table: pack::Params::TABLE,
-    run: |values, scene, rng, progress| {
-        pack::generate(&pack::Params::from_values(values), scene, rng, progress)
+pub const GENERATORS: &[Generator] = &[
+    Generator {
+        name: "pack",
+        title: "Pack along flow",
+        about: "Fill shapes with leaves, drops or your own elements that bend along a flow",
+        table: pack::Params::TABLE,
+        run: |values, scene, rng, progress| {
+            pack::generate(&pack::Params::from_values(values), scene, rng, progress)
+        },
     },
-}];
+    Generator {
+        name: "vine",
+        title: "Grow vines",
+        about: "Fill shapes with scrolling vines: stems that curl and branch, with leaves and flowers",
+        table: vine::Params::TABLE,
+        run: |values, scene, rng, progress| {
+            vine::generate(&vine::Params::from_values(values), scene, rng, progress)
+        },
+    },
+];
 
 /// Runs a generator.
 ///

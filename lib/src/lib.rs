@@ -6,14 +6,18 @@
 //! | generator | from |
 //! |---|---|
 //! | [`pack`] | Saputra, Kaplan, Asente, Mech: *FLOWPAK: Flow-based ornamental element packing*, 2017 |
+//! | [`vine`] | Xu, Mould: *Magnetic curves*, 2009, and an article that adds clip art |
 
 pub mod field;
 pub mod generate;
 pub mod geom;
 pub mod pack;
+pub mod palette;
 pub mod params;
 pub mod progress;
 pub mod rng;
+pub mod shapes;
+pub mod vine;
 
 pub use generate::{GENERATORS, Generator, generate};
 pub use params::{ParamSpec, Values};

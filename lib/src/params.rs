@@ -23,6 +23,15 @@ pub enum Kind {
         /// Largest value.
         max: i64,
     },
+    /// Numbers within a range, separated by commas: a value per level.
+    Numbers {
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+    },
+    /// Lengths separated by commas: a value per level.
+    Lengths,
     /// One of some values; each with what a dialog calls it.
     Choice(&'static [(&'static str, &'static str)]),
     /// Names separated by spaces; a dialog offers some, each with what it calls it.
@@ -118,10 +127,20 @@ impl ParamSpec {
             ))
         };
         match self.kind {
-            Kind::Length => match value.parse::<Length>() {
-                Ok(length) if length.to_user(1.0) >= 0.0 && length.to_user(1.0) <= 1e9 => Ok(()),
-                _ => wrong("a length of 0 or more, such as 12 or 4mm; 0 chooses by itself".into()),
-            },
+            Kind::Length if is_length(value) => Ok(()),
+            Kind::Length => wrong("a length of 0 or more, such as 12 or 4mm; 0 chooses by itself".into()),
+            Kind::Lengths if value.split(',').all(is_length) => Ok(()),
+            Kind::Lengths => {
+                wrong("lengths of 0 or more with commas between, such as 120,60; 0 chooses by itself".into())
+            }
+            Kind::Numbers { min, max } => {
+                let in_range =
+                    |item: &str| item.trim().parse::<f64>().is_ok_and(|number| (min..=max).contains(&number));
+                match value.split(',').all(in_range) {
+                    true => Ok(()),
+                    false => wrong(format!("numbers from {min} to {max} with commas between")),
+                }
+            }
             Kind::Number { min, max } => match value.parse::<f64>() {
                 Ok(number) if (min..=max).contains(&number) => Ok(()),
                 _ => wrong(format!("a number from {min} to {max}")),
@@ -141,6 +160,10 @@ impl ParamSpec {
             Kind::Names(_) => Ok(()),
         }
     }
+}
+
+fn is_length(text: &str) -> bool {
+    text.trim().parse::<Length>().is_ok_and(|length| (0.0..=1e9).contains(&length.to_user(1.0)))
 }
 
 /// A parameter's value in the type of its field.
@@ -176,6 +199,13 @@ impl FromValue for String {
 impl FromValue for Length {
     fn from_value(text: &str) -> Self {
         text.parse().unwrap_or(Length::user(0.0))
+    }
+}
+
+/// A list: a value per level.
+impl<T: FromValue> FromValue for Vec<T> {
+    fn from_value(text: &str) -> Self {
+        text.split(',').map(|item| T::from_value(item.trim())).collect()
     }
 }
 

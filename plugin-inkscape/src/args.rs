@@ -120,6 +120,8 @@ fn parameter(spec: &'static ParamSpec) -> Arg {
         Kind::Length => "LENGTH",
         Kind::Number { .. } => "NUMBER",
         Kind::Whole { .. } => "N",
+        Kind::Lengths => "LENGTH,...",
+        Kind::Numbers { .. } => "NUMBER,...",
         Kind::Choice(_) => "CHOICE",
         Kind::Names(_) => "NAMES",
         Kind::Switch => "true|false",
@@ -138,9 +140,9 @@ pub fn help(spec: &ParamSpec) -> String {
             let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
             format!(" ({})", names.join(", "))
         }
-        Kind::Number { min, max } => format!(" ({min} to {max})"),
+        Kind::Number { min, max } | Kind::Numbers { min, max } => format!(" ({min} to {max})"),
         Kind::Whole { min, max } => format!(" ({min} to {max})"),
-        Kind::Length | Kind::Switch => String::new(),
+        Kind::Length | Kind::Lengths | Kind::Switch => String::new(),
     };
     format!("{}{values} [default: {}]", spec.help, spec.default)
 }

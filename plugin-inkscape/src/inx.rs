@@ -201,6 +201,14 @@ fn parameter(inx: &mut Inx, spec: &ParamSpec) {
             (&min.to_string(), &max.to_string(), spec.default),
             false,
         ),
+        Kind::Numbers { .. } | Kind::Lengths => {
+            inx.0.start_element("param");
+            common(inx, spec.name, "string", &format!("{}:", spec.label), spec.help);
+            inx.0.set_preserve_whitespaces(true);
+            inx.0.write_text(spec.default);
+            inx.0.end_element();
+            inx.0.set_preserve_whitespaces(false);
+        }
         Kind::Choice(choices) | Kind::Names(choices) => {
             combo(inx, spec.name, spec.label, spec.help, (choices, spec.default));
         }

@@ -2,6 +2,7 @@
 
 pub mod bend;
 pub mod boolean;
+pub mod catmull_rom;
 pub mod crossing;
 pub mod distance;
 pub mod flatten;

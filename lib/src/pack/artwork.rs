@@ -7,6 +7,7 @@ use super::prepare::Prepared;
 use super::template::Template;
 use crate::field::LineKind;
 use crate::geom::polyline;
+use crate::palette::palette;
 use kurbo::{Affine, BezPath, Point};
 use rayon::prelude::*;
 use rinceau_format::{Artwork, Group, Item, Part, Scene, Style};
@@ -26,7 +27,7 @@ impl Made<'_> {
     /// The three tones of a container's field.
     fn palette(&self, field: usize, scene: &Scene) -> [&'static str; 3] {
         let field = &self.prepared.fields[field];
-        paint::palette(&field.params.palette, scene.containers[field.container].fill.as_deref())
+        palette(&field.params.palette, scene.containers[field.container].fill.as_deref())
     }
 
     /// A warning if a fixed spine got no element.

@@ -1,5 +1,6 @@
 //! What an artist can set.
 
+use crate::palette::PALETTES;
 use crate::params::Kind;
 use rinceau_format::Length;
 
@@ -13,18 +14,6 @@ pub(super) const FAMILIES: &[(&str, &str)] = &[
     ("spirals", "Spirals"),
     ("scales", "Scales"),
     ("feathers", "Feathers"),
-];
-
-/// Colours for built-in elements.
-const PALETTES: &[(&str, &str)] = &[
-    ("auto", "To suit the shape's fill"),
-    ("lagoon", "Lagoon: deep teal, sea green, ochre"),
-    ("ember", "Ember: wine, brick, amber"),
-    ("meadow", "Meadow: forest, moss, straw"),
-    ("dusk", "Dusk: indigo, plum, rose"),
-    ("pale", "Pale: cream, sand, sky (for dark shapes)"),
-    ("ink", "Ink: black"),
-    ("white", "White (for dark shapes)"),
 ];
 
 crate::params! {

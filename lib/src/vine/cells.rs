@@ -1,0 +1,231 @@
+//! Space in cells: which stem or clip art each belongs to (checklist M-020, M-026, M-027).
+//!
+//! A shape claims every cell that it comes nearer to than the gap. A new shape must touch no
+//! cell that is claimed. Both sides are counted generously, by half the diagonal of a cell, so
+//! two shapes that share no cell are apart by the gap for certain.
+
+use crate::geom::boolean::Contour;
+use crate::geom::distance::{covered, squared_distances};
+use crate::geom::region::Region;
+use kurbo::{Point, Rect};
+
+/// Half the diagonal of a cell, in cells.
+const HALF_DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// Who claims a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Owner(u32);
+
+impl Owner {
+    pub const FREE: Owner = Owner(0);
+    /// Not in the region: the paper's -1.
+    pub const OUTSIDE: Owner = Owner(u32::MAX);
+
+    /// A claim of the thing with this number.
+    fn of(id: u32, body: bool) -> Self {
+        Owner((id + 1) << 1 | u32::from(body))
+    }
+
+    /// The thing, unless the cell is free or outside.
+    pub fn id(self) -> Option<u32> {
+        (self != Owner::FREE && self != Owner::OUTSIDE).then(|| (self.0 >> 1) - 1)
+    }
+
+    /// True if the thing itself is there, not only its gap.
+    pub fn is_body(self) -> bool {
+        self.0 & 1 == 1 && self != Owner::OUTSIDE
+    }
+}
+
+/// Where the cells lie.
+struct Grid {
+    origin: Point,
+    /// Side of a cell.
+    size: f64,
+    columns: usize,
+    rows: usize,
+    /// Columns after which the cells begin anew; 0 for no repeat.
+    wrap: usize,
+}
+
+/// The cells of a container.
+pub(super) struct Cells {
+    grid: Grid,
+    owners: Vec<Owner>,
+    /// Where on its stem a claim lies, by arc length.
+    places: Vec<f32>,
+}
+
+impl Grid {
+    /// The radius about a sample that stands for a disc, when samples are `apart`.
+    fn reach(&self, radius: f64, apart: f64) -> f64 {
+        radius + HALF_DIAGONAL * self.size + 0.5 * apart
+    }
+
+    /// Visits the cells whose middle lies within a radius, `None` for those beyond the grid,
+    /// until `visit` says false. True if it never did.
+    fn near(&self, at: Point, radius: f64, mut visit: impl FnMut(Option<usize>) -> bool) -> bool {
+        let (x, y) = ((at.x - self.origin.x) / self.size - 0.5, (at.y - self.origin.y) / self.size - 0.5);
+        let r = radius / self.size;
+        let (low, high) = ((y - r).ceil() as i64, (y + r).floor() as i64);
+        for row in low..=high {
+            let dy = row as f64 - y;
+            let half = (r * r - dy * dy).max(0.0).sqrt();
+            let (left, right) = ((x - half).ceil() as i64, (x + half).floor() as i64);
+            for column in left..=right {
+                if !visit(self.index(column, row)) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    fn index(&self, column: i64, row: i64) -> Option<usize> {
+        let column = if self.wrap > 0 { column.rem_euclid(self.wrap as i64) } else { column };
+        let inside =
+            column >= 0 && row >= 0 && (column as usize) < self.columns && (row as usize) < self.rows;
+        inside.then(|| row as usize * self.columns + column as usize)
+    }
+}
+
+impl Cells {
+    /// Free cells inside a region. `period` joins its left and right ends.
+    pub fn new(region: &Region, size: f64, period: Option<f64>) -> Self {
+        let bounds = region.bounds();
+        // A whole number of cells in a period, so that the join is like any other place.
+        let (size, wrap) = match period {
+            Some(period) => {
+                let columns = (period / size).ceil().max(1.0);
+                (period / columns, columns as usize)
+            }
+            None => (size, 0),
+        };
+        let count = |side: f64| (side / size).ceil() as usize + 1;
+        let columns = if wrap > 0 { wrap } else { count(bounds.width()) };
+        let rows = count(bounds.height());
+        let inside = covered(region.contours(), bounds.origin(), size, columns, rows);
+        let owners = inside.iter().map(|&inside| if inside { Owner::FREE } else { Owner::OUTSIDE }).collect();
+        let places = vec![0.0; columns * rows];
+        let grid = Grid { origin: bounds.origin(), size, columns, rows, wrap };
+        let mut cells = Cells { grid, owners, places };
+        // What the edge passes near is outside for certain.
+        for contour in region.contours() {
+            cells.close_edge(contour, bounds, period.is_some());
+        }
+        cells
+    }
+
+    /// The side of cells for a region: fine against the thinnest of what is drawn, but not
+    /// more of them than `most`.
+    pub fn size_for(bounds: Rect, wanted: f64, most: f64) -> f64 {
+        wanted.max((bounds.area() / most).sqrt())
+    }
+
+    fn close_edge(&mut self, contour: &Contour, bounds: Rect, repeats: bool) {
+        let Some(&last) = contour.last() else { return };
+        let mut previous = last;
+        for &p in contour {
+            // The two ends of a repeat are no edges.
+            let at_end = |x: f64| (previous.x - x).abs() + (p.x - x).abs() < 1e-3 * bounds.width();
+            if !(repeats && (at_end(bounds.x0) || at_end(bounds.x1))) {
+                let apart = 0.5 * self.grid.size;
+                let pieces = (previous.distance(p) / apart).ceil().clamp(1.0, 1e5);
+                for k in 0..pieces as usize {
+                    let at = previous.lerp(p, k as f64 / pieces);
+                    self.grid.near(at, self.grid.reach(0.0, apart), |i| {
+                        i.into_iter().for_each(|i| self.owners[i] = Owner::OUTSIDE);
+                        true
+                    });
+                }
+            }
+            previous = p;
+        }
+    }
+
+    /// True if `may` allows every cell that a disc touches. `apart` is the distance to the next
+    /// disc of the same shape.
+    pub fn allows(
+        &self,
+        at: Point,
+        radius: f64,
+        apart: f64,
+        mut may: impl FnMut(Owner, f64) -> bool,
+    ) -> bool {
+        self.grid.near(at, self.grid.reach(radius, apart), |i| {
+            let owner = i.map_or(Owner::OUTSIDE, |i| self.owners[i]);
+            owner == Owner::FREE || may(owner, i.map_or(0.0, |i| f64::from(self.places[i])))
+        })
+    }
+
+    /// Claims a disc and the gap around it for a thing; `place` is the arc length there.
+    pub fn claim(&mut self, id: u32, at: Point, radius: f64, apart: f64, gap: f64, place: f64) {
+        let body = self.grid.reach(radius, apart);
+        let (owners, places) = (&mut self.owners, &mut self.places);
+        // Cells of the gap that others have are theirs already; the body is never in doubt.
+        self.grid.near(at, body + gap, |i| {
+            if let Some(i) = i.filter(|&i| owners[i] == Owner::FREE) {
+                (owners[i], places[i]) = (Owner::of(id, false), place as f32);
+            }
+            true
+        });
+        self.grid.near(at, body, |i| {
+            if let Some(i) = i.filter(|&i| owners[i] != Owner::OUTSIDE && !owners[i].is_body()) {
+                (owners[i], places[i]) = (Owner::of(id, true), place as f32);
+            }
+            true
+        });
+    }
+
+    /// Side of a cell.
+    pub fn size(&self) -> f64 {
+        self.grid.size
+    }
+
+    /// True if nothing claims a place.
+    pub fn is_free(&self, at: Point) -> bool {
+        self.cell(at).is_some_and(|i| self.owners[i] == Owner::FREE)
+    }
+
+    /// Squared distance of every cell to the nearest that is not free, in cells; and the number
+    /// of columns.
+    pub fn clearances(&self) -> (Vec<f64>, usize) {
+        // A frame of taken cells stands for what lies beyond the grid.
+        let columns = self.grid.columns + 2;
+        let mut taken = vec![true; columns * (self.grid.rows + 2)];
+        for row in 0..self.grid.rows {
+            for column in 0..self.grid.columns {
+                taken[(row + 1) * columns + column + 1] =
+                    self.owners[row * self.grid.columns + column] != Owner::FREE;
+            }
+        }
+        let framed = squared_distances(&taken, columns);
+        let unframed = (0..self.grid.rows)
+            .flat_map(|row| framed[(row + 1) * columns + 1..][..self.grid.columns].iter().copied())
+            .collect();
+        (unframed, self.grid.columns)
+    }
+
+    /// The middle of a cell.
+    pub fn middle(&self, i: usize) -> Point {
+        let (column, row) = ((i % self.grid.columns) as f64, (i / self.grid.columns) as f64);
+        Point::new(
+            self.grid.origin.x + (column + 0.5) * self.grid.size,
+            self.grid.origin.y + (row + 0.5) * self.grid.size,
+        )
+    }
+
+    /// The cell of a place, if it is on the grid.
+    pub fn cell(&self, at: Point) -> Option<usize> {
+        let (x, y) =
+            ((at.x - self.grid.origin.x) / self.grid.size, (at.y - self.grid.origin.y) / self.grid.size);
+        self.grid.index(x.floor() as i64, y.floor() as i64)
+    }
+
+    /// Share of the inside that is claimed by bodies.
+    pub fn coverage(&self) -> f64 {
+        let inside = self.owners.iter().filter(|&&owner| owner != Owner::OUTSIDE).count();
+        let bodies = self.owners.iter().filter(|owner| owner.is_body()).count();
+        bodies as f64 / inside.max(1) as f64
+    }
+}

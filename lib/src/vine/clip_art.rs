@@ -1,0 +1,288 @@
+//! Leaves, flowers and buds (checklist M-021 to M-028): templates with an origin and a
+//! direction, and the places where they go.
+
+use super::cells::{Cells, Owner};
+use crate::geom::boolean::{Contour, simplified};
+use crate::geom::flatten::flatten;
+use crate::geom::polyline::left_of;
+use crate::geom::region::Region;
+use crate::rng::Rng;
+use kurbo::{Affine, BezPath, Point, Rect, Shape};
+use rinceau_format::{Document, Element, Error, Scene, Selection, Style};
+
+const DRAWING: &str = include_str!("../../../samples/elements/vine.svg");
+
+/// Samples of an outline are this far apart, in lengths of the template.
+const APART: f64 = 1.0 / 18.0;
+/// Samples of its inside.
+const INSIDE: f64 = 1.0 / 9.0;
+
+/// Clip art of size 1: the origin at 0, growing along x.
+#[derive(Clone, Debug)]
+pub(super) struct Art {
+    pub id: String,
+    pub builtin: bool,
+    names: Vec<String>,
+    pub parts: Vec<(BezPath, Style)>,
+    /// How many times smaller than drawn: size 1 has the area of a leaf of length 1.
+    pub shrunk: f64,
+    /// Samples of what it covers, each with the distance to the next.
+    samples: Vec<(Point, f64)>,
+    /// The silhouette.
+    pub contours: Vec<Contour>,
+    /// True if it grows around its origin, as a flower does.
+    pub central: bool,
+}
+
+/// Clip art in its place.
+#[derive(Clone, Debug)]
+pub(super) struct PlacedArt {
+    pub art: usize,
+    pub pose: Affine,
+    pub size: f64,
+}
+
+impl Art {
+    fn new(element: &Element, builtin: bool) -> Result<Self, Error> {
+        let source = &element.source;
+        let Some((base, tip)) = element.template.spine else {
+            return Err(source.error("no-spine", format!("The element '{}' has no spine", source.id), "Draw a straight line from where it grows to where it points, mark it as spine, and group it with the element"));
+        };
+        let length = base.distance(tip);
+        let along = (tip - base) / length;
+        let normal = left_of(along);
+        let straight = Affine::new([
+            along.x / length,
+            normal.x / length,
+            along.y / length,
+            normal.y / length,
+            -along.dot(base.to_vec2()) / length,
+            -normal.dot(base.to_vec2()) / length,
+        ]);
+        let parts: Vec<(BezPath, Style)> = element
+            .template
+            .parts
+            .iter()
+            .map(|part| {
+                let to_unit = straight * part.transform;
+                (to_unit * part.path.clone(), part.style.scaled(to_unit.determinant().abs().sqrt(), 9))
+            })
+            .collect();
+        let contours = silhouette(&parts);
+        let bounds = bounds_of(&contours);
+        let Some(region) = Region::new(contours.clone()).filter(|_| bounds.area() > 1e-9) else {
+            let sentence = format!("The element '{}' covers nothing", source.id);
+            return Err(source.error("flat-element", sentence, "Draw it as closed or stroked shapes"));
+        };
+        // A template's size is what it covers, whatever the length of its spine.
+        const LEAF: f64 = 0.3;
+        let shrunk = (region.area() / LEAF).sqrt();
+        let to_size = Affine::scale(1.0 / shrunk);
+        let parts: Vec<(BezPath, Style)> =
+            parts.into_iter().map(|(path, style)| (to_size * path, style.scaled(1.0 / shrunk, 9))).collect();
+        let contours: Vec<Contour> =
+            contours.iter().map(|contour| contour.iter().map(|&p| to_size * p).collect()).collect();
+        let bounds = bounds_of(&contours);
+        let middle = bounds.center().to_vec2().hypot();
+        let names = element
+            .sets
+            .iter()
+            .chain([&element.kind, &element.symbol, &source.id])
+            .filter(|name| !name.is_empty())
+            .cloned()
+            .collect();
+        Ok(Art {
+            id: source.id.clone(),
+            builtin,
+            names,
+            parts,
+            shrunk,
+            samples: samples(&contours),
+            central: middle < 0.2 * bounds.size().max_side(),
+            contours,
+        })
+    }
+
+    /// True if `may` allows every cell that the art touches in this pose.
+    pub fn fits(
+        &self,
+        pose: Affine,
+        size: f64,
+        cells: &Cells,
+        mut may: impl FnMut(Point, Owner, f64) -> bool,
+    ) -> bool {
+        self.samples.iter().all(|&(p, apart)| {
+            let at = pose * p;
+            cells.allows(at, 0.0, apart * size, |owner, place| may(at, owner, place))
+        })
+    }
+
+    /// Claims what it covers.
+    pub fn claim(&self, pose: Affine, size: f64, cells: &mut Cells, id: u32, gap: f64) {
+        for &(p, apart) in &self.samples {
+            cells.claim(id, pose * p, 0.0, apart * size, gap, 0.0);
+        }
+    }
+}
+
+/// What parts cover together, strokes included.
+fn silhouette(parts: &[(BezPath, Style)]) -> Vec<Contour> {
+    const TOLERANCE: f64 = 2e-3;
+    let mut contours = Vec::new();
+    for (path, style) in parts {
+        let subpaths = flatten(path, TOLERANCE);
+        if style.is_filled() {
+            contours
+                .extend(simplified(&subpaths.iter().map(|s| s.points.clone()).collect::<Vec<_>>(), false));
+        }
+        for subpath in &subpaths {
+            let width = style.stroke_width().unwrap_or(0.0);
+            contours.extend(crate::geom::boolean::stroked(&subpath.points, subpath.closed, width));
+        }
+    }
+    simplified(&contours, false)
+}
+
+fn bounds_of(contours: &[Contour]) -> Rect {
+    let mut points = contours.iter().flatten();
+    let first = points.next().copied().unwrap_or_default();
+    points.fold(Rect::from_points(first, first), |bounds, &p| bounds.union_pt(p))
+}
+
+fn samples(contours: &[Contour]) -> Vec<(Point, f64)> {
+    let mut samples = Vec::new();
+    for contour in contours {
+        let Some(&last) = contour.last() else { continue };
+        let mut previous = last;
+        let mut left = 0.0;
+        for &p in contour {
+            let length = previous.distance(p);
+            let mut s = left;
+            while s < length {
+                samples.push((previous.lerp(p, s / length), APART));
+                s += APART;
+            }
+            left = s - length;
+            previous = p;
+        }
+    }
+    let Some(region) = Region::new(contours.to_vec()) else { return samples };
+    let bounds = region.bounds();
+    let count = |side: f64| (side / INSIDE).ceil() as usize;
+    for row in 0..count(bounds.height()) {
+        for column in 0..count(bounds.width()) {
+            let at = bounds.origin() + INSIDE * kurbo::Vec2::new(column as f64 + 0.5, row as f64 + 0.5);
+            if region.contains(at) {
+                // A square's corners are farther than its sides.
+                samples.push((at, 1.5 * INSIDE));
+            }
+        }
+    }
+    samples
+}
+
+/// Every template, and which are asked for at each level.
+pub(super) struct Library {
+    pub arts: Vec<Art>,
+}
+
+impl Library {
+    /// Drawn elements with a kind or a symbol of clip art, and the built-in ones.
+    ///
+    /// Errors: a drawn element without a spine, or that covers nothing.
+    pub fn new(scene: &Scene) -> Result<Self, Error> {
+        let mut arts =
+            scene.elements.iter().map(|element| Art::new(element, false)).collect::<Result<Vec<_>, _>>()?;
+        let builtin = Document::from_bytes(DRAWING.as_bytes().to_vec())?.scene(&Selection::default())?;
+        for element in &builtin.elements {
+            arts.push(Art::new(element, true)?);
+        }
+        arts.push(ball());
+        Ok(Library { arts })
+    }
+
+    /// What a list of names means at each of some levels. A name written twice counts twice.
+    ///
+    /// Errors: a name that means nothing.
+    pub fn choices(&self, names: &str, levels: usize) -> Result<Vec<Vec<Vec<usize>>>, Error> {
+        let mut lists = names.split(',').map(|list| {
+            list.split_whitespace().filter(|&name| name != "none").map(|name| self.named(name)).collect()
+        });
+        let lists: Vec<Vec<Vec<usize>>> = lists.by_ref().collect::<Result<_, _>>()?;
+        Ok((0..levels).map(|level| lists[level.min(lists.len() - 1)].clone()).collect())
+    }
+
+    /// What a name means: the artist's own before the built-in.
+    fn named(&self, name: &str) -> Result<Vec<usize>, Error> {
+        let of = |builtin: bool| -> Vec<usize> {
+            let means = |art: &Art| art.builtin == builtin && art.names.iter().any(|own| own == name);
+            (0..self.arts.len()).filter(|&i| means(&self.arts[i])).collect()
+        };
+        let own = of(false);
+        let found = if own.is_empty() { of(true) } else { own };
+        if found.is_empty() {
+            let mut known: Vec<&str> =
+                self.arts.iter().flat_map(|art| art.names.iter().map(String::as_str)).collect();
+            known.sort_unstable();
+            known.dedup();
+            return Err(Error::new(
+                "no-element",
+                format!("No clip art is called '{name}'"),
+                format!("Use none, or one of {}", known.join(", ")),
+            ));
+        }
+        Ok(found)
+    }
+}
+
+/// One of the templates that a level asks for.
+pub(super) fn pick(choices: &[Vec<usize>], rng: &mut Rng) -> Option<usize> {
+    let index = |n: usize, rng: &mut Rng| ((rng.unit() * n as f64) as usize).min(n - 1);
+    if choices.is_empty() {
+        return None;
+    }
+    let list = &choices[index(choices.len(), rng)];
+    Some(list[index(list.len(), rng)])
+}
+
+/// A disc about its origin, as smiths end a curl with.
+fn ball() -> Art {
+    let path = kurbo::Circle::new((0.0, 0.0), 0.22).to_path(1e-4);
+    let parts = vec![(path, Style::filled("#111111"))];
+    let contours = silhouette(&parts);
+    Art {
+        id: "ball".into(),
+        builtin: true,
+        names: vec!["ball".into()],
+        samples: samples(&contours),
+        contours,
+        parts,
+        shrunk: 1.0,
+        central: true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn built_in_art_grows_from_its_origin() {
+        let library = Library::new(&Scene::default()).unwrap();
+        for kind in ["leaf", "flower", "bud"] {
+            let choices = library.choices(kind, 1).unwrap();
+            assert!(choices[0][0].len() >= 4, "{kind}");
+            for &i in &choices[0][0] {
+                let art = &library.arts[i];
+                let bounds = bounds_of(&art.contours);
+                assert_eq!(art.central, kind == "flower", "{}", art.id);
+                assert!(bounds.inflate(0.05, 0.05).contains(Point::ORIGIN), "{}: {bounds}", art.id);
+                if kind != "flower" {
+                    assert!(bounds.x1 > 4.0 * -bounds.x0, "{} points along its spine: {bounds}", art.id);
+                }
+            }
+        }
+        assert!(library.choices("leaf leaf bud,none", 3).unwrap()[1].is_empty());
+        assert_eq!(library.choices("banana", 1).unwrap_err().code(), "no-element");
+    }
+}

@@ -1,0 +1,605 @@
+//! Branching and filling (checklist M-007 to M-014, M-020 to M-028, M-042).
+//!
+//! Every place on a stem where a branch could leave, to either side, is tried with the longest
+//! branch of its level, then with shorter ones, until one touches nothing. The longest of all
+//! places goes first; then all that it is in the way of are tried again. So large curls settle
+//! first and small ones between them, as in the largest-empty-circle methods, and branches
+//! alternate because a curl leaves no room for another beside it.
+//!
+//! `--places equal` is the article's rule instead: N places at equal intervals, alternate
+//! sides, in order.
+//!
+//! Departures, all where the papers' rule makes stubs or seams. A child starts as wide as its
+//! parent is there (M-016), but never wider than a share of its own length. The last of the
+//! article's N places is the very tip, where nothing can fork; the N places lie between the
+//! ends here. Clip art leans away from the stem instead of lying along it.
+
+use super::cells::{Cells, Owner};
+use super::clip_art::{Library, PlacedArt, pick};
+use super::params::{Params, Sizes, of_level};
+use super::particle::{Charge, Form, Law, Node, follow, unit};
+use super::stem::{Stem, Taper};
+use crate::geom::polyline::left_of;
+use crate::rng::Rng;
+use kurbo::{Affine, Point, Vec2};
+use std::collections::BinaryHeap;
+
+/// Each try is this much shorter than the one before.
+const SHORTER: f64 = 0.87;
+/// A branch is at least this many times longer than it is wide.
+const SLENDER: f64 = 13.0;
+/// Forks of one stem are at least this many widths apart on one side.
+const FORK_WIDTHS: f64 = 3.0;
+
+/// A plant while it grows in one container.
+pub(super) struct Plant<'a> {
+    pub params: &'a Params,
+    pub sizes: &'a Sizes,
+    library: &'a Library,
+    pub cells: Cells,
+    forms: Vec<Form>,
+    charge: &'a Charge,
+    pub stems: Vec<Stem>,
+    pub arts: Vec<PlacedArt>,
+    /// How many things claim cells: the next one's id.
+    things: u32,
+    /// Id of each stem.
+    ids: Vec<u32>,
+    forks: Vec<Vec<Vec<usize>>>,
+    tips: Vec<Vec<Vec<usize>>>,
+    rng: Rng,
+    noise: Vec<(Vec2, f64)>,
+}
+
+/// A place where a branch may leave.
+#[derive(Clone, Copy, Debug)]
+struct Site {
+    parent: usize,
+    s: f64,
+    side: f64,
+    longest: f64,
+}
+
+/// A site and the length of the branch that fits there, ordered by that.
+#[derive(Clone, Copy, Debug)]
+struct Offer {
+    rank: f64,
+    order: usize,
+    length: f64,
+    site: Site,
+}
+
+impl PartialEq for Offer {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Offer {}
+
+impl PartialOrd for Offer {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Offer {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.rank.total_cmp(&other.rank).then(other.order.cmp(&self.order))
+    }
+}
+
+impl<'a> Plant<'a> {
+    /// An empty container.
+    pub fn new(
+        (params, sizes): (&'a Params, &'a Sizes),
+        (library, charge): (&'a Library, &'a Charge),
+        (forks, tips): (Vec<Vec<Vec<usize>>>, Vec<Vec<Vec<usize>>>),
+        cells: Cells,
+        mut rng: Rng,
+    ) -> Self {
+        let euler = params.integrator == "euler";
+        let form = |level: usize| {
+            let alpha = of_level(&params.alpha, level).unwrap_or(0.5);
+            Form::new(charge, alpha, of_level(&params.turns, level).unwrap_or(1.0), euler)
+        };
+        // A few plane waves of about the size of a curl make a gentle, endless noise.
+        const WAVES: usize = 6;
+        let scale = 0.15 * sizes.length.iter().copied().fold(0.0, f64::max);
+        let noise = (0..WAVES)
+            .map(|_| {
+                let wave = unit(rng.between(0.0, std::f64::consts::TAU)) / (scale * rng.between(0.6, 1.6));
+                (wave, rng.between(0.0, std::f64::consts::TAU))
+            })
+            .collect();
+        Plant {
+            params,
+            sizes,
+            library,
+            cells,
+            forms: (0..params.levels).map(form).collect(),
+            charge,
+            stems: Vec::new(),
+            arts: Vec::new(),
+            things: 0,
+            ids: Vec::new(),
+            forks,
+            tips,
+            rng,
+            noise,
+        }
+    }
+
+    /// Adds a stem that is known to fit.
+    pub fn add(&mut self, mut stem: Stem) -> usize {
+        let index = self.stems.len();
+        let id = self.things;
+        self.things += 1;
+        self.ids.push(id);
+        // A curl ends where it gets tighter than it is wide.
+        let tight = stem.nodes.iter().find(|node| node.curvature.abs() * stem.width(node.s) > 1.3);
+        stem.end = tight.map_or(stem.length(), |node| node.s).max(0.5 * stem.length());
+        let discs = Discs::new(&stem.nodes, stem.end, self.cells.size(), |s| stem.width(s));
+        for disc in discs {
+            self.cells.claim(id, disc.at, disc.radius, disc.apart, self.sizes.gap, disc.s);
+        }
+        self.stems.push(stem);
+        index
+    }
+
+    /// Lets all levels grow from the stems there are, `go_on` willing. False if it was not.
+    pub fn branch(&mut self, most: usize, mut go_on: impl FnMut(f64) -> bool) -> bool {
+        if self.params.places == "equal" {
+            return self.branch_in_order(most, go_on);
+        }
+        let mut heap = BinaryHeap::new();
+        let mut order = 0;
+        for parent in 0..self.stems.len() {
+            self.offer(parent, &mut heap, &mut order);
+        }
+        let mut forks: Vec<Vec<(f64, f64)>> = vec![Vec::new(); self.stems.len()];
+        let mut popped = 0;
+        while let Some(offer) = heap.pop() {
+            const ASK_EVERY: usize = 64;
+            popped += 1;
+            if popped % ASK_EVERY == 0 && !go_on(self.stems.len() as f64 / most as f64) {
+                return false;
+            }
+            let site = offer.site;
+            let stem = &self.stems[site.parent];
+            let limit = of_level(&self.params.branches, stem.level).unwrap_or(0.0) as usize;
+            let apart = FORK_WIDTHS * (stem.width(site.s) + self.sizes.gap);
+            let taken = &forks[site.parent];
+            let close = |&(s, side): &(f64, f64)| {
+                (s - site.s).abs() < if side == site.side { 2.0 * apart } else { 0.5 * apart }
+            };
+            if taken.len() >= limit || taken.iter().any(close) {
+                continue;
+            }
+            match self.fitting(&site, offer.length) {
+                Some((length, branch)) if length >= offer.length => {
+                    forks[site.parent].push((site.s, site.side));
+                    let index = self.grow(branch, &site);
+                    forks.push(Vec::new());
+                    if self.stems.len() >= most {
+                        return false;
+                    }
+                    self.offer(index, &mut heap, &mut order);
+                }
+                Some((length, _)) => heap.push(Offer { rank: length, length, ..offer }),
+                None => {}
+            }
+        }
+        true
+    }
+
+    /// Places on a stem, with what fits there now.
+    fn offer(&self, parent: usize, heap: &mut BinaryHeap<Offer>, order: &mut usize) {
+        let stem = &self.stems[parent];
+        if stem.level + 1 >= self.params.levels {
+            return;
+        }
+        let length = stem.end;
+        let step = (1.2 * stem.taper.start + self.sizes.gap).max(length / 48.0);
+        // Not at the very start, where the parent is still near, nor under the tip's flower.
+        let mut s = (0.06 * length).max(if stem.parent.is_some() { 2.0 * step } else { 0.5 * step });
+        while s < 0.96 * length {
+            for side in [1.0, -1.0] {
+                let site = Site { parent, s, side, longest: self.longest(parent, s) };
+                if let Some((length, _)) = self.fitting(&site, site.longest) {
+                    *order += 1;
+                    heap.push(Offer { rank: length, order: *order, length, site });
+                }
+            }
+            s += step;
+        }
+    }
+
+    /// The longest branch that the rules allow.
+    fn longest(&self, parent: usize, s: f64) -> f64 {
+        let stem = &self.stems[parent];
+        let own = self.sizes.length[(stem.level + 1).min(self.sizes.length.len() - 1)];
+        // A main stem that was drawn short may still carry long branches.
+        let natural = self.params.rule == "natural" && stem.parent.is_some();
+        // What is still to come of the parent is what nature leaves for a branch.
+        let of_parent = if natural { (stem.length() - 0.6 * s).max(0.0) } else { f64::INFINITY };
+        own.min(of_parent)
+    }
+
+    /// The article's places: N per stem at equal intervals, sides in turn, level by level.
+    fn branch_in_order(&mut self, most: usize, mut go_on: impl FnMut(f64) -> bool) -> bool {
+        let mut parent = 0;
+        while parent < self.stems.len() {
+            if !go_on(parent as f64 / self.stems.len() as f64) {
+                return false;
+            }
+            let (level, length) = (self.stems[parent].level, self.stems[parent].end);
+            let count = of_level(&self.params.branches, level).unwrap_or(0.0) as usize;
+            // The first branch leaves on the inside of its parent's curl.
+            let first = self.stems[parent].side;
+            for i in 0..if level + 1 < self.params.levels { count } else { 0 } {
+                let s = (i + 1) as f64 / (count + 1) as f64 * length;
+                let side = if i % 2 == 0 { first } else { -first };
+                let site = Site { parent, s, side, longest: self.longest(parent, s) };
+                if let Some((_, branch)) = self.fitting(&site, site.longest) {
+                    self.grow(branch, &site);
+                    if self.stems.len() >= most {
+                        return false;
+                    }
+                }
+            }
+            parent += 1;
+        }
+        true
+    }
+
+    /// The longest branch at a site that touches nothing, `longest` at most.
+    fn fitting(&self, site: &Site, longest: f64) -> Option<(f64, Stem)> {
+        let parent = &self.stems[site.parent];
+        let level = parent.level + 1;
+        let start = parent.at(site.s);
+        let width = parent.width(site.s);
+        // A twig as thin as the gap is as thin as anything should be.
+        let shortest = (1.6 * SLENDER).max(9.0) * 0.22 * self.sizes.width;
+        let mut length = longest;
+        while length >= shortest {
+            let taper = self.taper(width.min(length / SLENDER));
+            if let Some(nodes) = self.curve(site, level, &start, length, &taper) {
+                let end = nodes.last().map_or(0.0, |node| node.s);
+                let parent = Some((site.parent, site.s));
+                return Some((length, Stem { level, parent, side: site.side, nodes, taper, end }));
+            }
+            length *= SHORTER;
+        }
+        None
+    }
+
+    /// How a stem of this width gets thinner.
+    pub fn taper(&self, start: f64) -> Taper {
+        let tip = if self.params.taper == 0.0 { start } else { start * self.params.tip_width };
+        Taper { start, tip, power: self.params.taper.max(1e-3) }
+    }
+
+    /// A branch of some length from a place, if it touches nothing.
+    fn curve(
+        &self,
+        site: &Site,
+        level: usize,
+        start: &Node,
+        length: f64,
+        taper: &Taper,
+    ) -> Option<Vec<Node>> {
+        let fork = Fork {
+            id: self.ids[site.parent],
+            s: site.s,
+            reach: (5.0 * (self.stems[site.parent].width(site.s) + self.sizes.gap)).max(0.3 * length),
+        };
+        if self.params.field == "constant" {
+            // All curves of a level are similar: look first, build then.
+            let form = &self.forms[level];
+            let pose = Pose::new(start, length, site.side);
+            let total = form.length() * length;
+            let nodes = form.nodes.iter().map(|node| pose.node(node));
+            if !self.touches_nothing(nodes, total, taper, Some(fork)) {
+                return None;
+            }
+            return Some(form.nodes.iter().map(|node| pose.node(node)).collect());
+        }
+        let law = Law::new(
+            self.charge,
+            of_level(&self.params.alpha, level).unwrap_or(0.5),
+            of_level(&self.params.turns, level).unwrap_or(1.0) * std::f64::consts::TAU,
+        );
+        let nodes = follow(&law, *start, length, site.side, |p| self.strength(p));
+        self.touches_nothing(nodes.iter().copied(), length, taper, Some(fork)).then_some(nodes)
+    }
+
+    /// B at a place, as a multiple of the constant field.
+    fn strength(&self, at: Point) -> f64 {
+        if self.params.field == "noise" {
+            let sum: f64 =
+                self.noise.iter().map(|(wave, phase)| libm::sin(wave.dot(at.to_vec2()) + phase)).sum();
+            return 1.0 + 0.22 * sum;
+        }
+        // Stronger near walls, so that what comes near turns away (M-039).
+        const BETA: f64 = 1.2;
+        let reach = 3.0 * self.sizes.width;
+        let near = |r: f64| !self.cells.allows(at, r, 0.0, |owner, _| owner != Owner::OUTSIDE);
+        let distance = (1..=4).map(|k| f64::from(k) * reach / 2.0).find(|&r| near(r)).unwrap_or(4.0 * reach);
+        1.0 + BETA * libm::exp(-distance / reach)
+    }
+
+    /// True if a curve with a width touches nothing but its parent near the fork.
+    pub fn touches_nothing(
+        &self,
+        nodes: impl Iterator<Item = Node>,
+        length: f64,
+        taper: &Taper,
+        fork: Option<Fork>,
+    ) -> bool {
+        let size = self.cells.size();
+        let mut left = fork.is_none();
+        let mut next = 0.0;
+        let mut before = 0.0;
+        for node in nodes {
+            let half = taper.at(node.s / length) / 2.0;
+            if node.s < next && node.s < length {
+                continue;
+            }
+            // A curl ends where it gets tighter than it is wide.
+            if node.s > 0.5 * length && node.curvature.abs() * 2.0 * half > 1.3 {
+                break;
+            }
+            let mut at_parent = false;
+            let apart = (node.s - before).min(2.0 * size);
+            let free = self.cells.allows(node.p, half, apart, |owner, place| {
+                let Some(fork) = fork.filter(|fork| !left && owner.id() == Some(fork.id)) else {
+                    return false;
+                };
+                at_parent = true;
+                (place - fork.s).abs() <= fork.reach && node.s <= fork.reach
+            });
+            if !free {
+                return false;
+            }
+            left |= !at_parent;
+            before = node.s;
+            next = node.s + 0.9 * size.max(0.5 * half);
+        }
+        left
+    }
+
+    /// A branch in its place, and what grows at its fork and its tip.
+    fn grow(&mut self, branch: Stem, site: &Site) -> usize {
+        let index = self.add(branch);
+        self.place_tip(index);
+        self.place_fork(site, index);
+        index
+    }
+
+    /// Size of clip art on a stem.
+    fn art_size(&self, level: usize) -> f64 {
+        // Each level's is smaller (M-025).
+        self.sizes.art * libm::pow(0.82, level.saturating_sub(1) as f64)
+    }
+
+    /// What sits at the end of a curl: as large as there is room inside it.
+    pub fn place_tip(&mut self, stem: usize) {
+        let level = self.stems[stem].level;
+        let mut rng = self.rng.fork();
+        let Some(art) = pick(&self.tips[level], &mut rng) else { return };
+        let full = self.stems[stem].end;
+        let id = self.ids[stem];
+        let largest = self.art_size(level).min(0.3 * full);
+        let central = self.library.arts[art].central;
+        let twist = rng.between(-0.4, 0.4);
+        let mut size = largest;
+        while size > 0.3 * largest {
+            // Where a bud does not fit, its stem may be shorter (M-036).
+            let ends: &[f64] = if central { &[1.0, 0.96] } else { &[1.0, 0.95, 0.88, 0.8, 0.72] };
+            for share in ends {
+                let end = share * full;
+                let tip = self.stems[stem].at(end);
+                let turn = if central { twist } else { 0.0 };
+                let pose = posed(tip.p, rotated(tip.along, turn), size, self.stems[stem].side > 0.0);
+                // Under a flower lies the end of its own stem, and nothing else of it.
+                let own = self.own_end(stem, end, tip.p, if central { 0.75 * size } else { 0.0 });
+                let width = self.stems[stem].width(end) + self.sizes.gap;
+                let may = |at: Point, owner: Owner, place: f64| {
+                    owner.id() == Some(id)
+                        && place >= own
+                        && (central || at.distance(tip.p) < 1.5 * width || place > end)
+                };
+                if self.library.arts[art].fits(pose, size, &self.cells, may) {
+                    let reach = if central { 0.3 * size } else { 0.0 };
+                    self.stems[stem].end = self.own_end(stem, end, tip.p, reach).min(end);
+                    self.place(art, pose, size);
+                    return;
+                }
+            }
+            size *= 0.85;
+        }
+    }
+
+    /// From where on a stem stays within a radius of a place near its end.
+    fn own_end(&self, stem: usize, end: f64, at: Point, radius: f64) -> f64 {
+        let stem = &self.stems[stem];
+        let outside = |node: &&Node| node.s <= end && node.p.distance(at) > radius;
+        let last = stem.nodes.iter().rev().find(outside).map_or(0.0, |node| node.s);
+        last.max(end - 3.0 * radius - stem.width(end) - self.sizes.gap)
+    }
+
+    /// What grows at a fork: on the side that the branch does not take (M-024).
+    fn place_fork(&mut self, site: &Site, branch: usize) {
+        let level = self.stems[branch].level;
+        let mut rng = self.rng.fork();
+        let Some(art) = pick(&self.forks[level], &mut rng) else { return };
+        let size = self.art_size(level).min(0.4 * self.stems[branch].length());
+        self.place_beside(site.parent, site.s, -site.side, art, (size, 0.5), Some(self.ids[branch]));
+    }
+
+    /// Leaves in the room that is left along the stems, the largest first.
+    pub fn place_leaves(&mut self, mut go_on: impl FnMut(f64) -> bool) -> bool {
+        let wanted = self.params.leaves;
+        if wanted <= 0.0 {
+            return true;
+        }
+        let mut sites: Vec<(usize, f64, f64)> = Vec::new();
+        for (index, stem) in self.stems.iter().enumerate() {
+            let step = (0.5 * self.art_size(stem.level)).max(2.0 * self.sizes.gap) / wanted;
+            let count = (stem.end / step).ceil().max(1.0);
+            for i in 0..count as usize {
+                let s = (i as f64 + 0.6) / count * stem.end;
+                sites.extend([1.0, -1.0].map(|side| (index, s, side)));
+            }
+        }
+        // Large ones everywhere before any small one.
+        for (round, scale) in [1.0, 0.78, 0.6, 0.46].into_iter().enumerate() {
+            for &(stem, s, side) in &sites {
+                if !go_on(round as f64 / 4.0) {
+                    return false;
+                }
+                let level = self.stems[stem].level;
+                let mut rng = self.rng.fork();
+                let Some(art) = pick(&self.forks[level], &mut rng) else { continue };
+                let size = scale * self.art_size(level);
+                self.place_beside(stem, s, side, art, (size, 0.999), None);
+            }
+        }
+        true
+    }
+
+    /// Places clip art beside a stem, as large as fits down to a share of `size`.
+    fn place_beside(
+        &mut self,
+        stem: usize,
+        s: f64,
+        side: f64,
+        art: usize,
+        (size, least): (f64, f64),
+        branch: Option<u32>,
+    ) -> bool {
+        const LEAN: [f64; 3] = [0.75, 1.05, 0.5];
+        let parent = &self.stems[stem];
+        let node = parent.at(s);
+        let (width, id) = (parent.width(s), self.ids[stem]);
+        // From within the stem, so that no light falls between.
+        let origin = node.p + side * 0.25 * width * left_of(node.along);
+        let near = width + self.sizes.gap + 2.0 * self.cells.size();
+        let mut scale = 1.0;
+        while scale >= least {
+            let size = size * scale;
+            for lean in LEAN {
+                let pose = posed(origin, rotated(node.along, side * lean), size, side < 0.0);
+                let may = |at: Point, owner: Owner, place: f64| {
+                    let distance = at.distance(origin);
+                    let own = owner.id() == Some(id) && (place - s).abs() < 0.5 * size + 2.0 * near;
+                    let sibling = branch.is_some() && owner.id() == branch;
+                    (own && (distance < near || !owner.is_body()) && distance < 3.0 * near)
+                        || (sibling && !owner.is_body() && distance < near)
+                };
+                if self.library.arts[art].fits(pose, size, &self.cells, may) {
+                    self.place(art, pose, size);
+                    return true;
+                }
+            }
+            scale *= 0.85;
+        }
+        false
+    }
+
+    fn place(&mut self, art: usize, pose: Affine, size: f64) {
+        let id = self.things;
+        self.things += 1;
+        self.library.arts[art].claim(pose, size, &mut self.cells, id, self.sizes.gap);
+        self.arts.push(PlacedArt { art, pose, size });
+    }
+
+    /// The form of a level.
+    pub fn form(&self, level: usize) -> &Form {
+        &self.forms[level]
+    }
+}
+
+/// Where a branch leaves its parent: near there it may touch it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fork {
+    pub id: u32,
+    pub s: f64,
+    pub reach: f64,
+}
+
+/// From a form to its place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pose {
+    start: Point,
+    along: Vec2,
+    length: f64,
+    side: f64,
+}
+
+impl Pose {
+    /// Starts at a node and turns to a side.
+    pub fn new(start: &Node, length: f64, side: f64) -> Self {
+        Pose { start: start.p, along: start.along, length, side }
+    }
+
+    /// A node of a form in its place.
+    pub fn node(&self, node: &Node) -> Node {
+        let turn = |v: Vec2| {
+            let v = Vec2::new(v.x, self.side * v.y);
+            Vec2::new(self.along.x * v.x - self.along.y * v.y, self.along.y * v.x + self.along.x * v.y)
+        };
+        Node {
+            s: node.s * self.length,
+            p: self.start + self.length * turn(node.p.to_vec2()),
+            along: turn(node.along),
+            curvature: self.side * node.curvature / self.length,
+        }
+    }
+}
+
+/// Clip art of a size at a place, growing along a direction; `mirrored` swaps its sides.
+fn posed(at: Point, along: Vec2, size: f64, mirrored: bool) -> Affine {
+    let y = if mirrored { -1.0 } else { 1.0 };
+    Affine::new([along.x, along.y, -y * along.y, y * along.x, at.x, at.y]) * Affine::scale(size)
+}
+
+fn rotated(v: Vec2, angle: f64) -> Vec2 {
+    let turn = unit(angle);
+    Vec2::new(turn.x * v.x - turn.y * v.y, turn.y * v.x + turn.x * v.y)
+}
+
+/// Discs that cover a stem.
+struct Disc {
+    at: Point,
+    radius: f64,
+    apart: f64,
+    s: f64,
+}
+
+struct Discs;
+
+impl Discs {
+    fn new(nodes: &[Node], end: f64, size: f64, width: impl Fn(f64) -> f64) -> Vec<Disc> {
+        let mut discs = Vec::new();
+        for pair in nodes.windows(2) {
+            let (a, b) = (pair[0], pair[1]);
+            if a.s >= end {
+                break;
+            }
+            let count = ((b.s - a.s) / size).ceil().max(1.0);
+            for k in 0..count as usize {
+                let t = k as f64 / count;
+                let s = a.s + t * (b.s - a.s);
+                discs.push(Disc {
+                    at: a.p.lerp(b.p, t),
+                    radius: width(s) / 2.0,
+                    apart: (b.s - a.s) / count,
+                    s,
+                });
+            }
+        }
+        discs
+    }
+}

@@ -1,0 +1,171 @@
+//! Vines of magnetic curves with clip art.
+//!
+//! Ling Xu, David Mould: *Magnetic Curves: Curvature-Controlled Aesthetic Curves Using Magnetic
+//! Fields*, Computational Aesthetics 2009; and the article *Computer-generated Floral Ornament
+//! Based on Magnetic Curves*, which adds levels, tapering strokes, regions and adaptive clip art.
+//!
+//! 1. Divide each container into cells (M-019, M-020): `cells`.
+//! 2. Start main stems: as drawn, as one curl, or finding their own way: `start`.
+//! 3. Let branches leave where they fit, each a magnetic curve (M-003 to M-014): `particle`,
+//!    `grow`.
+//! 4. Place flowers at tips, leaves at forks and where room is left (M-021 to M-028): `grow`,
+//!    `clip_art`.
+//! 5. Draw the stems as tapered outlines (M-015 to M-017): `stem`, `artwork`.
+//!
+//! Departures are argued where they happen: exact curves instead of Euler steps (`particle`),
+//! longest-first branching, slender children and leaning leaves (`grow`), round tips (`stem`).
+
+mod artwork;
+mod cells;
+mod clip_art;
+mod grow;
+mod params;
+mod particle;
+mod start;
+mod stem;
+
+pub use params::Params;
+
+use crate::progress::Progress;
+use crate::rng::Rng;
+use crate::shapes::Shapes;
+use artwork::Layers;
+use cells::Cells;
+use clip_art::Library;
+use grow::Plant;
+use kurbo::Point;
+use params::Sizes;
+use particle::Charge;
+use rinceau_format::{Artwork, Error, Scene};
+use std::collections::BTreeMap;
+
+/// Stems of one container at most.
+pub const MOST_STEMS: usize = 60_000;
+/// Cells of one container at most; with more the same ornament takes longer and no other shape.
+const MOST_CELLS: f64 = 6e6;
+
+/// Grows a vine in every container of a scene.
+///
+/// Errors: nothing to fill; a container, stem or element that cannot be used; a name of clip art
+/// or a charge that means nothing.
+pub fn generate(
+    params: &Params,
+    scene: &Scene,
+    rng: &mut Rng,
+    progress: &mut dyn Progress,
+) -> Result<Artwork, Error> {
+    progress.step("prepare", 0.0);
+    let shapes = Shapes::new(scene)?;
+    let library = Library::new(scene)?;
+    let mut layers = Layers::new(scene);
+    let mut warnings = scene.warnings.clone();
+    let mut counts = BTreeMap::new();
+    let mut complete = true;
+    for index in 0..scene.containers.len() {
+        let mut one = Container { scene, shapes: &shapes, index, library: &library };
+        match one.grow(params, &mut rng.fork(), &mut layers, &mut counts, progress)? {
+            Some(finished) => complete &= finished,
+            None => warnings.push(format!(
+                "The container '{}' is too small or too thin for anything to grow, or lies under another",
+                scene.containers[index].source.id
+            )),
+        }
+    }
+    progress.step("artwork", 0.0);
+    if layers.stems.items.is_empty() {
+        let remedy = "Make the stem width or the gap smaller";
+        return Err(Error::new("nothing-fits", "No stem fits into the shape", remedy));
+    }
+    Ok(Artwork { groups: layers.into_groups(), complete, warnings, counts, decimals: shapes.decimals() })
+}
+
+/// One container of a run.
+struct Container<'a> {
+    scene: &'a Scene,
+    shapes: &'a Shapes,
+    index: usize,
+    library: &'a Library,
+}
+
+impl Container<'_> {
+    /// Grows and draws; false if the time ran out, `None` if there is no room at all.
+    fn grow(
+        &mut self,
+        params: &Params,
+        rng: &mut Rng,
+        layers: &mut Layers,
+        counts: &mut BTreeMap<String, f64>,
+        progress: &mut dyn Progress,
+    ) -> Result<Option<bool>, Error> {
+        let container = &self.scene.containers[self.index];
+        let overrides = container.overrides.iter().map(|(name, value)| (name.as_str(), value.as_str()));
+        let params = params.overridden(overrides).map_err(|error| error.at(container.source.at))?;
+        let charge = Charge::from_param(&params.charge)?;
+        let forks = self.library.choices(&params.forks, params.levels)?;
+        let tips = self.library.choices(&params.tips, params.levels)?;
+        progress.step("cells", 0.0);
+        let Some(inradius) = self.inradius() else { return Ok(None) };
+        let sizes = Sizes::new(&params, self.shapes.areas[self.index], inradius, self.scene.px_per_unit);
+        let Some(cells) = self.cells(&params, &sizes) else { return Ok(None) };
+        let mut plant =
+            Plant::new((&params, &sizes), (self.library, &charge), (forks, tips), cells, rng.fork());
+        progress.step("stem", 0.0);
+        self.start(&mut plant, inradius, rng);
+        progress.step("branches", 0.0);
+        let mut finished = plant.branch(MOST_STEMS, |done| progress.step("branches", done));
+        (0..plant.stems.len())
+            .filter(|&i| plant.stems[i].level == 0)
+            .collect::<Vec<_>>()
+            .into_iter()
+            .for_each(|i| plant.place_tip(i));
+        finished &= plant.place_leaves(|done| progress.step("leaves", done));
+        layers.add(&plant, self.library, container.fill.as_deref(), self.shapes.decimals());
+        *counts.entry("stems".into()).or_insert(0.0) += plant.stems.len() as f64;
+        *counts.entry("elements".into()).or_insert(0.0) += plant.arts.len() as f64;
+        Ok(Some(finished))
+    }
+
+    /// Radius of the largest circle inside. `None` if there is no inside.
+    fn inradius(&self) -> Option<f64> {
+        const CELLS: f64 = 4e4;
+        let region = self.shapes.free(self.index, 0.0, 0.0)?;
+        let size = (region.bounds().area() / CELLS).sqrt();
+        let (squared, _) = Cells::new(&region, size, None).clearances();
+        Some(squared.into_iter().fold(0.0, f64::max).sqrt() * size).filter(|&radius| radius > 0.0)
+    }
+
+    /// The free cells.
+    fn cells(&self, params: &Params, sizes: &Sizes) -> Option<Cells> {
+        let region = self.shapes.free(self.index, sizes.gap, sizes.edge)?;
+        // As fine as the thinnest twig.
+        let size = Cells::size_for(region.bounds(), 0.14 * sizes.width, MOST_CELLS);
+        let period = params.repeat.then(|| region.bounds().width());
+        Some(Cells::new(&region, size, period))
+    }
+
+    /// Plants the main stems.
+    fn start(&self, plant: &mut Plant, inradius: f64, rng: &mut Rng) {
+        let drawn =
+            self.scene.stems.iter().flat_map(|stem| start::drawn(&stem.path, plant.taper(plant.sizes.width)));
+        let mut drawn: Vec<_> = drawn.filter(|stem| start::is_inside(&plant.cells, stem)).collect();
+        let seeds = self.scene.seeds.iter().map(|seed| seed.at).filter(|&at| plant.cells.is_free(at));
+        let mut seeds: Vec<Option<Point>> = seeds.map(Some).collect();
+        if drawn.is_empty() && seeds.is_empty() {
+            seeds.push(None);
+        }
+        for stem in drawn.drain(..) {
+            plant.add(stem);
+        }
+        for seed in seeds {
+            let stem = if plant.params.stem == "curl" {
+                start::curl(plant, seed, plant.sizes.length[0])
+            } else {
+                start::wander(plant, seed, inradius, rng)
+                    .or_else(|| start::curl(plant, seed, plant.sizes.length[0]))
+            };
+            if let Some(stem) = stem {
+                plant.add(stem);
+            }
+        }
+    }
+}
