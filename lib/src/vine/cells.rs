@@ -182,9 +182,9 @@ impl Cells {
         self.grid.size
     }
 
-    /// True if nothing claims a place.
-    pub fn is_free(&self, at: Point) -> bool {
-        self.cell(at).is_some_and(|i| self.owners[i] == Owner::FREE)
+    /// Who claims a place.
+    pub fn owner(&self, at: Point) -> Owner {
+        self.cell(at).map_or(Owner::OUTSIDE, |i| self.owners[i])
     }
 
     /// Squared distance of every cell to the nearest that is not free, in cells; and the number
@@ -220,12 +220,5 @@ impl Cells {
         let (x, y) =
             ((at.x - self.grid.origin.x) / self.grid.size, (at.y - self.grid.origin.y) / self.grid.size);
         self.grid.index(x.floor() as i64, y.floor() as i64)
-    }
-
-    /// Share of the inside that is claimed by bodies.
-    pub fn coverage(&self) -> f64 {
-        let inside = self.owners.iter().filter(|&&owner| owner != Owner::OUTSIDE).count();
-        let bodies = self.owners.iter().filter(|owner| owner.is_body()).count();
-        bodies as f64 / inside.max(1) as f64
     }
 }

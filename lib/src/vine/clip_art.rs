@@ -24,12 +24,10 @@ pub(super) struct Art {
     pub builtin: bool,
     names: Vec<String>,
     pub parts: Vec<(BezPath, Style)>,
-    /// How many times smaller than drawn: size 1 has the area of a leaf of length 1.
-    pub shrunk: f64,
+    /// Distance from the origin to the farthest point.
+    pub radius: f64,
     /// Samples of what it covers, each with the distance to the next.
     samples: Vec<(Point, f64)>,
-    /// The silhouette.
-    pub contours: Vec<Contour>,
     /// True if it grows around its origin, as a flower does.
     pub central: bool,
 }
@@ -96,10 +94,9 @@ impl Art {
             builtin,
             names,
             parts,
-            shrunk,
+            radius: radius(&contours),
             samples: samples(&contours),
             central: middle < 0.2 * bounds.size().max_side(),
-            contours,
         })
     }
 
@@ -147,6 +144,10 @@ fn bounds_of(contours: &[Contour]) -> Rect {
     let mut points = contours.iter().flatten();
     let first = points.next().copied().unwrap_or_default();
     points.fold(Rect::from_points(first, first), |bounds, &p| bounds.union_pt(p))
+}
+
+fn radius(contours: &[Contour]) -> f64 {
+    contours.iter().flatten().map(|p| p.to_vec2().hypot()).fold(0.0, f64::max)
 }
 
 fn samples(contours: &[Contour]) -> Vec<(Point, f64)> {
@@ -255,9 +256,8 @@ fn ball() -> Art {
         builtin: true,
         names: vec!["ball".into()],
         samples: samples(&contours),
-        contours,
+        radius: radius(&contours),
         parts,
-        shrunk: 1.0,
         central: true,
     }
 }
@@ -274,7 +274,8 @@ mod tests {
             assert!(choices[0][0].len() >= 4, "{kind}");
             for &i in &choices[0][0] {
                 let art = &library.arts[i];
-                let bounds = bounds_of(&art.contours);
+                let bounds =
+                    art.parts.iter().map(|(path, _)| path.bounding_box()).reduce(|a, b| a.union(b)).unwrap();
                 assert_eq!(art.central, kind == "flower", "{}", art.id);
                 assert!(bounds.inflate(0.05, 0.05).contains(Point::ORIGIN), "{}: {bounds}", art.id);
                 if kind != "flower" {

@@ -28,6 +28,8 @@ use std::collections::BinaryHeap;
 const SHORTER: f64 = 0.87;
 /// A branch is at least this many times longer than it is wide.
 const SLENDER: f64 = 13.0;
+/// And at most so many times.
+const LONGEST_WIDTHS: f64 = 75.0;
 /// Forks of one stem are at least this many widths apart on one side.
 const FORK_WIDTHS: f64 = 3.0;
 
@@ -202,7 +204,7 @@ impl<'a> Plant<'a> {
         let length = stem.end;
         let step = (1.2 * stem.taper.start + self.sizes.gap).max(length / 48.0);
         // Not at the very start, where the parent is still near, nor under the tip's flower.
-        let mut s = (0.06 * length).max(if stem.parent.is_some() { 2.0 * step } else { 0.5 * step });
+        let mut s = if stem.parent.is_some() { (0.06 * length).max(2.0 * step) } else { 0.6 * step };
         while s < 0.96 * length {
             for side in [1.0, -1.0] {
                 let site = Site { parent, s, side, longest: self.longest(parent, s) };
@@ -223,7 +225,8 @@ impl<'a> Plant<'a> {
         let natural = self.params.rule == "natural" && stem.parent.is_some();
         // What is still to come of the parent is what nature leaves for a branch.
         let of_parent = if natural { (stem.length() - 0.6 * s).max(0.0) } else { f64::INFINITY };
-        own.min(of_parent)
+        // Nor longer than its width can carry: a hair that runs through the whole shape.
+        own.min(of_parent).min(LONGEST_WIDTHS * stem.width(s))
     }
 
     /// The article's places: N per stem at equal intervals, sides in turn, level by level.
@@ -299,6 +302,9 @@ impl<'a> Plant<'a> {
             let form = &self.forms[level];
             let pose = Pose::new(start, length, site.side);
             let total = form.length() * length;
+            if self.hits_something(form, &pose, fork) {
+                return None;
+            }
             let nodes = form.nodes.iter().map(|node| pose.node(node));
             if !self.touches_nothing(nodes, total, taper, Some(fork)) {
                 return None;
@@ -312,6 +318,18 @@ impl<'a> Plant<'a> {
         );
         let nodes = follow(&law, *start, length, site.side, |p| self.strength(p));
         self.touches_nothing(nodes.iter().copied(), length, taper, Some(fork)).then_some(nodes)
+    }
+
+    /// A look at a few places on the centre line, from the far side: most of what does not fit
+    /// shows there.
+    fn hits_something(&self, form: &Form, pose: &Pose, fork: Fork) -> bool {
+        const LOOKS: usize = 14;
+        let n = form.nodes.len();
+        (1..LOOKS).rev().any(|k| {
+            let node = &form.nodes[k * n / LOOKS];
+            let owner = self.cells.owner(pose.point(node.p));
+            owner != Owner::FREE && owner.id() != Some(fork.id)
+        })
     }
 
     /// B at a place, as a multiple of the constant field.
@@ -380,7 +398,7 @@ impl<'a> Plant<'a> {
     /// Size of clip art on a stem.
     fn art_size(&self, level: usize) -> f64 {
         // Each level's is smaller (M-025).
-        self.sizes.art * libm::pow(0.82, level.saturating_sub(1) as f64)
+        self.sizes.art * libm::pow(0.87, level.saturating_sub(1) as f64)
     }
 
     /// What sits at the end of a curl: as large as there is room inside it.
@@ -403,16 +421,17 @@ impl<'a> Plant<'a> {
                 let turn = if central { twist } else { 0.0 };
                 let pose = posed(tip.p, rotated(tip.along, turn), size, self.stems[stem].side > 0.0);
                 // Under a flower lies the end of its own stem, and nothing else of it.
-                let own = self.own_end(stem, end, tip.p, if central { 0.75 * size } else { 0.0 });
-                let width = self.stems[stem].width(end) + self.sizes.gap;
+                let radius = if central { self.library.arts[art].radius * size } else { 0.0 };
+                let width = self.stems[stem].width(end) + self.sizes.gap + 2.0 * self.cells.size();
+                let own = self.own_end(stem, end, tip.p, radius) - 2.0 * width;
                 let may = |at: Point, owner: Owner, place: f64| {
                     owner.id() == Some(id)
                         && place >= own
                         && (central || at.distance(tip.p) < 1.5 * width || place > end)
                 };
                 if self.library.arts[art].fits(pose, size, &self.cells, may) {
-                    let reach = if central { 0.3 * size } else { 0.0 };
-                    self.stems[stem].end = self.own_end(stem, end, tip.p, reach).min(end);
+                    // The centre of a flower hides the end; its petals may have gaps.
+                    self.stems[stem].end = self.own_end(stem, end, tip.p, 0.4 * radius).min(end);
                     self.place(art, pose, size);
                     return;
                 }
@@ -426,7 +445,8 @@ impl<'a> Plant<'a> {
         let stem = &self.stems[stem];
         let outside = |node: &&Node| node.s <= end && node.p.distance(at) > radius;
         let last = stem.nodes.iter().rev().find(outside).map_or(0.0, |node| node.s);
-        last.max(end - 3.0 * radius - stem.width(end) - self.sizes.gap)
+        // The second winding from within is too near, however long the first is.
+        last.max(end - 7.0 * radius)
     }
 
     /// What grows at a fork: on the side that the branch does not take (M-024).
@@ -454,9 +474,9 @@ impl<'a> Plant<'a> {
             }
         }
         // Large ones everywhere before any small one.
-        for (round, scale) in [1.0, 0.78, 0.6, 0.46].into_iter().enumerate() {
+        for (round, scale) in [1.0, 0.8, 0.64, 0.5, 0.4].into_iter().enumerate() {
             for &(stem, s, side) in &sites {
-                if !go_on(round as f64 / 4.0) {
+                if !go_on(round as f64 / 5.0) {
                     return false;
                 }
                 let level = self.stems[stem].level;
@@ -479,23 +499,24 @@ impl<'a> Plant<'a> {
         (size, least): (f64, f64),
         branch: Option<u32>,
     ) -> bool {
-        const LEAN: [f64; 3] = [0.75, 1.05, 0.5];
+        const LEAN: [f64; 4] = [0.8, 1.1, 0.55, 1.35];
         let parent = &self.stems[stem];
         let node = parent.at(s);
         let (width, id) = (parent.width(s), self.ids[stem]);
-        // From within the stem, so that no light falls between.
-        let origin = node.p + side * 0.25 * width * left_of(node.along);
         let near = width + self.sizes.gap + 2.0 * self.cells.size();
         let mut scale = 1.0;
         while scale >= least {
             let size = size * scale;
+            // From within the stem, so that no light falls between.
+            let origin = node.p + side * (0.5 * width - 0.06 * size).max(0.0) * left_of(node.along);
+            let base = 0.5 * width + 0.26 * size;
             for lean in LEAN {
                 let pose = posed(origin, rotated(node.along, side * lean), size, side < 0.0);
                 let may = |at: Point, owner: Owner, place: f64| {
                     let distance = at.distance(origin);
                     let own = owner.id() == Some(id) && (place - s).abs() < 0.5 * size + 2.0 * near;
                     let sibling = branch.is_some() && owner.id() == branch;
-                    (own && (distance < near || !owner.is_body()) && distance < 3.0 * near)
+                    (own && (distance < base || !owner.is_body()) && distance < 3.0 * near)
                         || (sibling && !owner.is_body() && distance < near)
                 };
                 if self.library.arts[art].fits(pose, size, &self.cells, may) {
@@ -544,16 +565,22 @@ impl Pose {
         Pose { start: start.p, along: start.along, length, side }
     }
 
+    fn turned(&self, v: Vec2) -> Vec2 {
+        let v = Vec2::new(v.x, self.side * v.y);
+        Vec2::new(self.along.x * v.x - self.along.y * v.y, self.along.y * v.x + self.along.x * v.y)
+    }
+
+    /// A point of a form in its place.
+    fn point(&self, p: Point) -> Point {
+        self.start + self.length * self.turned(p.to_vec2())
+    }
+
     /// A node of a form in its place.
     pub fn node(&self, node: &Node) -> Node {
-        let turn = |v: Vec2| {
-            let v = Vec2::new(v.x, self.side * v.y);
-            Vec2::new(self.along.x * v.x - self.along.y * v.y, self.along.y * v.x + self.along.x * v.y)
-        };
         Node {
             s: node.s * self.length,
-            p: self.start + self.length * turn(node.p.to_vec2()),
-            along: turn(node.along),
+            p: self.point(node.p),
+            along: self.turned(node.along),
             curvature: self.side * node.curvature / self.length,
         }
     }

@@ -30,7 +30,7 @@ use crate::progress::Progress;
 use crate::rng::Rng;
 use crate::shapes::Shapes;
 use artwork::Layers;
-use cells::Cells;
+use cells::{Cells, Owner};
 use clip_art::Library;
 use grow::Plant;
 use kurbo::Point;
@@ -148,7 +148,7 @@ impl Container<'_> {
         let drawn =
             self.scene.stems.iter().flat_map(|stem| start::drawn(&stem.path, plant.taper(plant.sizes.width)));
         let mut drawn: Vec<_> = drawn.filter(|stem| start::is_inside(&plant.cells, stem)).collect();
-        let seeds = self.scene.seeds.iter().map(|seed| seed.at).filter(|&at| plant.cells.is_free(at));
+        let seeds = self.scene.seeds.iter().map(|seed| seed.at).filter(|&at| plant.cells.owner(at) == Owner::FREE);
         let mut seeds: Vec<Option<Point>> = seeds.map(Some).collect();
         if drawn.is_empty() && seeds.is_empty() {
             seeds.push(None);

@@ -37,7 +37,7 @@ crate::params! {
         #[doc = "How stems get thinner: 0 keeps their width, 1 thins evenly, 2 thins fast at first"]
         taper: f64 = "taper", "Taper", More, Kind::Number { min: 0.0, max: 4.0 }, "1";
         #[doc = "Width of a stem's tip, as a share of its width at the start"]
-        tip_width: f64 = "tip-width", "Tip width", More, Kind::Number { min: 0.0, max: 1.0 }, "0.18";
+        tip_width: f64 = "tip-width", "Tip width", More, Kind::Number { min: 0.0, max: 1.0 }, "0.22";
         #[doc = "Where the main stem comes from when none is drawn: it finds its own way through the shape, or curls up from the bottom as a single spiral"]
         stem: String = "stem", "Main stem", More, Kind::Choice(&[("wander", "Finds its way"), ("curl", "One curl from the bottom")]), "wander";
         #[doc = "Which way the main curl turns first"]
@@ -109,13 +109,13 @@ impl Sizes {
         // A stem this much thinner than the shape is a line in a field, not a pipe; and in
         // thin shapes it leaves room for curls on both sides.
         let width = or(params.stem_width, (0.026 * area.sqrt()).min(0.14 * inradius));
-        let gap = or(params.gap, 0.42 * width);
+        let gap = or(params.gap, 0.36 * width);
         let edge = or(params.edge, gap);
         let longest = |level: usize| {
             let own = of_level(&params.length, level).unwrap_or(Length::user(0.0));
             or(own, 7.0 * inradius)
         };
         let length = (0..params.levels).map(longest).collect();
-        Sizes { width, gap, edge, length, art: 5.0 * width * params.clip_art }
+        Sizes { width, gap, edge, length, art: 6.0 * width * params.clip_art }
     }
 }

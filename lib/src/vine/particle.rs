@@ -14,7 +14,6 @@
 //! Departure: the article integrates by forward Euler steps, which multiply the speed by
 //! `sqrt(1 + q^2)` at each step and draw another, longer curve. That is `--integrator euler`.
 
-use super::params::Params;
 use kurbo::{Point, Vec2};
 use rinceau_format::Error;
 use std::f64::consts::{FRAC_PI_2, TAU};

@@ -11,12 +11,11 @@ use super::grow::{Plant, Pose};
 use super::particle::{Node, unit};
 use super::stem::{Stem, Taper};
 use crate::geom::catmull_rom;
-use crate::geom::polyline::left_of;
 use crate::rng::Rng;
 use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveCurvature, ParamCurveDeriv, PathEl, Point, Rect, Vec2};
 
 /// Particles that are tried.
-const TRIES: usize = 160;
+const TRIES: usize = 120;
 
 /// A stem through the nodes of a drawn path. `None` for a path of one point.
 pub(super) fn drawn(path: &BezPath, taper: Taper) -> Vec<Stem> {
@@ -190,11 +189,14 @@ pub(super) fn wander(plant: &Plant, seed: Option<Point>, inradius: f64, rng: &mu
         })
         .map(|i| plant.cells.middle(i))
         .collect();
+    let bounds = starts.iter().fold(Rect::from_points(*starts.first()?, starts[0]), |b, &p| b.union_pt(p));
     let mut best: Option<(f64, Vec<Node>)> = None;
     for _ in 0..TRIES {
         let index = (rng.unit() * starts.len() as f64) as usize;
         let at = seed.or(starts.get(index).copied())?;
         let (score, nodes) = particle(&country, at, reach, width, rng);
+        // Plants grow from the ground, if it makes no great difference.
+        let score = score + 0.12 * (at.y - bounds.y0) / bounds.height().max(f64::MIN_POSITIVE);
         if nodes.len() > 8 && best.as_ref().is_none_or(|(other, _)| score > *other) {
             best = Some((score, nodes));
         }
@@ -303,10 +305,4 @@ fn curled(plant: &Plant, stem: Stem, longest: f64) -> Stem {
 /// True if a stem lies in the free cells all along.
 pub(super) fn is_inside(cells: &Cells, stem: &Stem) -> bool {
     stem.nodes.iter().all(|node| cells.allows(node.p, 0.0, 0.0, |owner, _| owner != Owner::OUTSIDE))
-}
-
-/// The side on which a stem keeps a place, for tests and for symmetry.
-#[cfg(test)]
-fn side_of(node: &Node, at: Point) -> f64 {
-    (at - node.p).dot(left_of(node.along)).signum()
 }
