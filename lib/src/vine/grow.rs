@@ -18,6 +18,7 @@ use super::cells::{Cells, Owner};
 use super::clip_art::{Library, PlacedArt, pick};
 use super::params::{Params, Sizes, of_level};
 use super::particle::{Charge, Form, Law, Node, follow, unit};
+use super::plait::{self, Crossing};
 use super::stem::{Stem, Taper};
 use crate::geom::polyline::left_of;
 use crate::rng::Rng;
@@ -47,6 +48,8 @@ pub(super) struct Plant<'a> {
     things: u32,
     /// Id of each stem.
     ids: Vec<u32>,
+    /// Where branches cross.
+    pub crossings: Vec<Crossing>,
     forks: Vec<Vec<Vec<usize>>>,
     tips: Vec<Vec<Vec<usize>>>,
     rng: Rng,
@@ -125,6 +128,7 @@ impl<'a> Plant<'a> {
             arts: Vec::new(),
             things: 0,
             ids: Vec::new(),
+            crossings: Vec::new(),
             forks,
             tips,
             rng,
@@ -175,12 +179,13 @@ impl<'a> Plant<'a> {
             let close = |&(s, side): &(f64, f64)| {
                 (s - site.s).abs() < if side == site.side { 2.0 * apart } else { 0.5 * apart }
             };
-            if taken.len() >= limit || taken.iter().any(close) {
+            if taken.len() >= limit || taken.iter().any(close) || self.is_near_crossing(site.parent, site.s) {
                 continue;
             }
             match self.fitting(&site, offer.length) {
-                Some((length, branch)) if length >= offer.length => {
+                Some((length, branch, crossings)) if length >= offer.length => {
                     forks[site.parent].push((site.s, site.side));
+                    self.crossings = crossings;
                     let index = self.grow(branch, &site);
                     forks.push(Vec::new());
                     if self.stems.len() >= most {
@@ -188,7 +193,7 @@ impl<'a> Plant<'a> {
                     }
                     self.offer(index, &mut heap, &mut order);
                 }
-                Some((length, _)) => heap.push(Offer { rank: length, length, ..offer }),
+                Some((length, ..)) => heap.push(Offer { rank: length, length, ..offer }),
                 None => {}
             }
         }
@@ -208,7 +213,7 @@ impl<'a> Plant<'a> {
         while s < 0.96 * length {
             for side in [1.0, -1.0] {
                 let site = Site { parent, s, side, longest: self.longest(parent, s) };
-                if let Some((length, _)) = self.fitting(&site, site.longest) {
+                if let Some((length, ..)) = self.fitting(&site, site.longest) {
                     *order += 1;
                     heap.push(Offer { rank: length, order: *order, length, site });
                 }
@@ -244,7 +249,8 @@ impl<'a> Plant<'a> {
                 let s = (i + 1) as f64 / (count + 1) as f64 * length;
                 let side = if i % 2 == 0 { first } else { -first };
                 let site = Site { parent, s, side, longest: self.longest(parent, s) };
-                if let Some((_, branch)) = self.fitting(&site, site.longest) {
+                if let Some((_, branch, crossings)) = self.fitting(&site, site.longest) {
+                    self.crossings = crossings;
                     self.grow(branch, &site);
                     if self.stems.len() >= most {
                         return false;
@@ -257,7 +263,7 @@ impl<'a> Plant<'a> {
     }
 
     /// The longest branch at a site that touches nothing, `longest` at most.
-    fn fitting(&self, site: &Site, longest: f64) -> Option<(f64, Stem)> {
+    fn fitting(&self, site: &Site, longest: f64) -> Option<(f64, Stem, Vec<Crossing>)> {
         let parent = &self.stems[site.parent];
         let level = parent.level + 1;
         let start = parent.at(site.s);
@@ -267,10 +273,11 @@ impl<'a> Plant<'a> {
         let mut length = longest;
         while length >= shortest {
             let taper = self.taper(width.min(length / SLENDER));
-            if let Some(nodes) = self.curve(site, level, &start, length, &taper) {
-                let end = nodes.last().map_or(0.0, |node| node.s);
-                let parent = Some((site.parent, site.s));
-                return Some((length, Stem { level, parent, side: site.side, nodes, taper, end }));
+            if let Some((nodes, met)) = self.curve(site, level, &start, length, &taper) {
+                let stem = Stem::new(level, Some((site.parent, site.s)), site.side, nodes, taper);
+                if let Some(crossings) = self.crossings(&stem, &met) {
+                    return Some((length, stem, crossings));
+                }
             }
             length *= SHORTER;
         }
@@ -291,7 +298,7 @@ impl<'a> Plant<'a> {
         start: &Node,
         length: f64,
         taper: &Taper,
-    ) -> Option<Vec<Node>> {
+    ) -> Option<(Vec<Node>, Vec<Met>)> {
         let fork = Fork {
             id: self.ids[site.parent],
             s: site.s,
@@ -306,10 +313,8 @@ impl<'a> Plant<'a> {
                 return None;
             }
             let nodes = form.nodes.iter().map(|node| pose.node(node));
-            if !self.touches_nothing(nodes, total, taper, Some(fork)) {
-                return None;
-            }
-            return Some(form.nodes.iter().map(|node| pose.node(node)).collect());
+            let met = self.way(nodes, total, taper, Some(fork))?;
+            return Some((form.nodes.iter().map(|node| pose.node(node)).collect(), met));
         }
         let law = Law::new(
             self.charge,
@@ -317,7 +322,8 @@ impl<'a> Plant<'a> {
             of_level(&self.params.turns, level).unwrap_or(1.0) * std::f64::consts::TAU,
         );
         let nodes = follow(&law, *start, length, site.side, |p| self.strength(p));
-        self.touches_nothing(nodes.iter().copied(), length, taper, Some(fork)).then_some(nodes)
+        let met = self.way(nodes.iter().copied(), length, taper, Some(fork))?;
+        Some((nodes, met))
     }
 
     /// A look at a few places on the centre line, from the far side: most of what does not fit
@@ -328,7 +334,9 @@ impl<'a> Plant<'a> {
         (1..LOOKS).rev().any(|k| {
             let node = &form.nodes[k * n / LOOKS];
             let owner = self.cells.owner(pose.point(node.p));
-            owner != Owner::FREE && owner.id() != Some(fork.id)
+            owner != Owner::FREE
+                && owner.id() != Some(fork.id)
+                && !(self.params.plait && owner != Owner::OUTSIDE)
         })
     }
 
@@ -347,18 +355,20 @@ impl<'a> Plant<'a> {
         1.0 + BETA * libm::exp(-distance / reach)
     }
 
-    /// True if a curve with a width touches nothing but its parent near the fork.
-    pub fn touches_nothing(
+    /// What a curve with a width meets: nothing but its parent near the fork, or in plait-work
+    /// stems that it crosses steeply. `None` if it touches anything else.
+    pub fn way(
         &self,
         nodes: impl Iterator<Item = Node>,
         length: f64,
         taper: &Taper,
         fork: Option<Fork>,
-    ) -> bool {
+    ) -> Option<Vec<Met>> {
         let size = self.cells.size();
         let mut left = fork.is_none();
-        let mut next = 0.0;
-        let mut before = 0.0;
+        let (mut next, mut before) = (0.0, 0.0);
+        let mut met: Vec<Met> = Vec::new();
+        let mut crossing = false;
         for node in nodes {
             let half = taper.at(node.s / length) / 2.0;
             if node.s < next && node.s < length {
@@ -368,23 +378,109 @@ impl<'a> Plant<'a> {
             if node.s > 0.5 * length && node.curvature.abs() * 2.0 * half > 1.3 {
                 break;
             }
-            let mut at_parent = false;
+            let (mut at_parent, mut at_other) = (false, None);
             let apart = (node.s - before).min(2.0 * size);
             let free = self.cells.allows(node.p, half, apart, |owner, place| {
-                let Some(fork) = fork.filter(|fork| !left && owner.id() == Some(fork.id)) else {
-                    return false;
-                };
-                at_parent = true;
-                (place - fork.s).abs() <= fork.reach && node.s <= fork.reach
+                if let Some(fork) = fork.filter(|fork| !left && owner.id() == Some(fork.id)) {
+                    at_parent = true;
+                    return (place - fork.s).abs() <= fork.reach && node.s <= fork.reach;
+                }
+                let other = owner.id().filter(|_| self.params.plait && left);
+                let same = other.is_some() && at_other.is_none_or(|(id, _)| Some(id) == other);
+                at_other = at_other.or(other.map(|id| (id, place)));
+                same
             });
             if !free {
-                return false;
+                return None;
             }
             left |= !at_parent;
+            if let Some((id, place)) = at_other {
+                let stem = self.ids.iter().position(|&own| own == id)?;
+                if !self.is_crossed(
+                    stem,
+                    place,
+                    &node,
+                    (node.s, length),
+                    crossing.then(|| met.last()).flatten(),
+                ) {
+                    return None;
+                }
+                let side = plait::side(&self.stems[stem], place, node.p);
+                match met.last_mut().filter(|_| crossing) {
+                    Some(last) => (last.s, last.place, last.after) = (node.s, place, side),
+                    None => met.push(Met { stem, s: node.s, place, before: side, after: side }),
+                }
+            }
+            // It has to come out on the other side.
+            if crossing && at_other.is_none() && met.last().is_some_and(|met| met.before * met.after >= 0.0) {
+                return None;
+            }
+            crossing = at_other.is_some();
             before = node.s;
             next = node.s + 0.9 * size.max(0.5 * half);
         }
-        left
+        (left && !crossing).then_some(met)
+    }
+
+    /// True if a place on a stem is too near a crossing for anything to grow there.
+    fn is_near_crossing(&self, stem: usize, s: f64) -> bool {
+        let apart = 2.0 * (self.stems[stem].width(s) + self.sizes.gap) + self.sizes.width;
+        self.crossings
+            .iter()
+            .flat_map(|crossing| crossing.at)
+            .any(|(own, at)| own == stem && (at - s).abs() < apart)
+    }
+
+    /// True if a place on another stem may be crossed there: steeply, away from its ends and
+    /// from one's own tip.
+    fn is_crossed(
+        &self,
+        stem: usize,
+        place: f64,
+        node: &Node,
+        (s, length): (f64, f64),
+        last: Option<&Met>,
+    ) -> bool {
+        const FROM_ENDS: f64 = 0.06;
+        let other = &self.stems[stem];
+        let tangent = other.at(place).along;
+        let (share, own) = (place / other.end.max(f64::MIN_POSITIVE), s / length);
+        node.along.cross(tangent).abs() > plait::LEAST_SINE
+            && share > FROM_ENDS
+            && share < 1.0 - 2.0 * FROM_ENDS
+            && own < 0.8
+            && last.is_none_or(|last| last.stem == stem)
+    }
+
+    /// All crossings, those of a new branch included. `None` if over and under cannot alternate
+    /// then, or where it does not cross cleanly.
+    fn crossings(&self, branch: &Stem, met: &[Met]) -> Option<Vec<Crossing>> {
+        /// More would hide the branch.
+        const MOST: usize = 4;
+        if met.is_empty() {
+            return Some(self.crossings.clone());
+        }
+        let index = self.stems.len();
+        let mut crossings = self.crossings.clone();
+        for met in met {
+            let other = &self.stems[met.stem];
+            let (s, place) = plait::meet(branch, met.s, other, met.place)?;
+            // The gaps of two crossings must not run into each other, nor into a fork.
+            let apart = 3.0 * (other.width(place) + branch.width(s) + 2.0 * self.sizes.gap);
+            let close = |stem: usize, at: f64| {
+                crossings
+                    .iter()
+                    .flat_map(|crossing| crossing.at)
+                    .any(|(own, s)| own == stem && (s - at).abs() < apart)
+            };
+            let forks = self.stems.iter().filter_map(|stem| stem.parent);
+            let near_fork = |(parent, s): (usize, f64)| parent == met.stem && (s - place).abs() < apart;
+            if close(met.stem, place) || close(index, s) || forks.into_iter().any(near_fork) || s < apart {
+                return None;
+            }
+            crossings.push(Crossing { at: [(index, s), (met.stem, place)] });
+        }
+        (met.len() <= MOST && plait::alternate(&crossings).is_some()).then_some(crossings)
     }
 
     /// A branch in its place, and what grows at its fork and its tip.
@@ -411,12 +507,19 @@ impl<'a> Plant<'a> {
         let largest = self.art_size(level).min(0.3 * full);
         let central = self.library.arts[art].central;
         let twist = rng.between(-0.4, 0.4);
+        // What others cross must stay.
+        let crossings = self.crossings.iter().flat_map(|crossing| crossing.at);
+        let crossed =
+            crossings.filter(|at| at.0 == stem).map(|at| at.1).fold(0.0, f64::max) + 2.0 * self.sizes.width;
         let mut size = largest;
         while size > 0.3 * largest {
             // Where a bud does not fit, its stem may be shorter (M-036).
             let ends: &[f64] = if central { &[1.0, 0.96] } else { &[1.0, 0.95, 0.88, 0.8, 0.72] };
             for share in ends {
                 let end = share * full;
+                if end < crossed {
+                    continue;
+                }
                 let tip = self.stems[stem].at(end);
                 let turn = if central { twist } else { 0.0 };
                 let pose = posed(tip.p, rotated(tip.along, turn), size, self.stems[stem].side > 0.0);
@@ -431,7 +534,8 @@ impl<'a> Plant<'a> {
                 };
                 if self.library.arts[art].fits(pose, size, &self.cells, may) {
                     // The centre of a flower hides the end; its petals may have gaps.
-                    self.stems[stem].end = self.own_end(stem, end, tip.p, 0.4 * radius).min(end);
+                    self.stems[stem].end =
+                        self.own_end(stem, end, tip.p, 0.4 * radius).min(end).max(crossed.min(end));
                     self.place(art, pose, size);
                     return;
                 }
@@ -482,6 +586,9 @@ impl<'a> Plant<'a> {
                 let level = self.stems[stem].level;
                 let mut rng = self.rng.fork();
                 let Some(art) = pick(&self.forks[level], &mut rng) else { continue };
+                if s > self.stems[stem].end || self.is_near_crossing(stem, s) {
+                    continue;
+                }
                 let size = scale * self.art_size(level);
                 self.place_beside(stem, s, side, art, (size, 0.999), None);
             }
@@ -540,6 +647,18 @@ impl<'a> Plant<'a> {
     pub fn form(&self, level: usize) -> &Form {
         &self.forms[level]
     }
+}
+
+/// Another stem on a curve's way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Met {
+    stem: usize,
+    /// Arc lengths on the curve and on the other.
+    s: f64,
+    place: f64,
+    /// On which side of the other the curve came, and left.
+    before: f64,
+    after: f64,
 }
 
 /// Where a branch leaves its parent: near there it may touch it.

@@ -10,7 +10,8 @@
 //!    `grow`.
 //! 4. Place flowers at tips, leaves at forks and where room is left (M-021 to M-028): `grow`,
 //!    `clip_art`.
-//! 5. Draw the stems as tapered outlines (M-015 to M-017): `stem`, `artwork`.
+//! 5. Cut the lower stem where branches cross, if they may (M-041): `plait`.
+//! 6. Draw the stems as tapered outlines (M-015 to M-017): `stem`, `artwork`.
 //!
 //! Departures are argued where they happen: exact curves instead of Euler steps (`particle`),
 //! longest-first branching, slender children and leaning leaves (`grow`), round tips (`stem`).
@@ -21,6 +22,7 @@ mod clip_art;
 mod grow;
 mod params;
 mod particle;
+mod plait;
 mod start;
 mod stem;
 
@@ -119,8 +121,10 @@ impl Container<'_> {
             .into_iter()
             .for_each(|i| plant.place_tip(i));
         finished &= plant.place_leaves(|done| progress.step("leaves", done));
+        plait::cut(&mut plant.stems, &plant.crossings, 0.8 * sizes.gap);
         layers.add(&plant, self.library, container.fill.as_deref(), self.shapes.decimals());
         *counts.entry("stems".into()).or_insert(0.0) += plant.stems.len() as f64;
+        *counts.entry("crossings".into()).or_insert(0.0) += plant.crossings.len() as f64;
         *counts.entry("elements".into()).or_insert(0.0) += plant.arts.len() as f64;
         Ok(Some(finished))
     }
@@ -148,7 +152,8 @@ impl Container<'_> {
         let drawn =
             self.scene.stems.iter().flat_map(|stem| start::drawn(&stem.path, plant.taper(plant.sizes.width)));
         let mut drawn: Vec<_> = drawn.filter(|stem| start::is_inside(&plant.cells, stem)).collect();
-        let seeds = self.scene.seeds.iter().map(|seed| seed.at).filter(|&at| plant.cells.owner(at) == Owner::FREE);
+        let seeds =
+            self.scene.seeds.iter().map(|seed| seed.at).filter(|&at| plant.cells.owner(at) == Owner::FREE);
         let mut seeds: Vec<Option<Point>> = seeds.map(Some).collect();
         if drawn.is_empty() && seeds.is_empty() {
             seeds.push(None);

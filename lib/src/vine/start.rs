@@ -30,8 +30,8 @@ pub(super) fn drawn(path: &BezPath, taper: Taper) -> Vec<Stem> {
     }
     let stem = |(points, closed): (Vec<Point>, bool)| {
         let nodes = nodes(&catmull_rom::through(&points, closed));
-        let end = nodes.last().map_or(0.0, |node| node.s);
-        (end > 0.0).then_some(Stem { level: 0, parent: None, side: 1.0, nodes, taper, end })
+        let stem = Stem::new(0, None, 1.0, nodes, taper);
+        (stem.end > 0.0).then_some(stem)
     };
     subpaths.into_iter().filter_map(stem).collect()
 }
@@ -84,9 +84,8 @@ pub(super) fn curl(plant: &Plant, seed: Option<Point>, longest: f64) -> Option<S
                 let along = unit(heading - std::f64::consts::FRAC_PI_2);
                 let pose = Pose::new(&Node { s: 0.0, p: at, along, curvature: 0.0 }, length, side);
                 let nodes: Vec<Node> = form.nodes.iter().map(|node| pose.node(node)).collect();
-                if plant.touches_nothing(nodes.iter().copied(), form.length() * length, &taper, None) {
-                    let end = nodes.last().map_or(0.0, |node| node.s);
-                    return Some(Stem { level: 0, parent: None, side, nodes, taper, end });
+                if plant.way(nodes.iter().copied(), form.length() * length, &taper, None).is_some() {
+                    return Some(Stem::new(0, None, side, nodes, taper));
                 }
             }
         }
@@ -203,9 +202,7 @@ pub(super) fn wander(plant: &Plant, seed: Option<Point>, inradius: f64, rng: &mu
     }
     let (_, nodes) = best?;
     let taper = Taper { start: width, tip: 0.34 * width, power: plant.params.taper.max(1e-3) };
-    let end = nodes.last().map_or(0.0, |node| node.s);
-    let stem = Stem { level: 0, parent: None, side: 1.0, nodes, taper, end };
-    Some(curled(plant, stem, 5.0 * inradius))
+    Some(curled(plant, Stem::new(0, None, 1.0, nodes, taper), 5.0 * inradius))
 }
 
 /// Runs one particle; what it comes near, less what it bends, is its score.
@@ -279,7 +276,7 @@ fn curled(plant: &Plant, stem: Stem, longest: f64) -> Stem {
                     })
                 };
                 let free = form.nodes.iter().step_by(3).all(|node| apart(&pose.node(node)));
-                if free && plant.touches_nothing(nodes, form.length() * length, &taper, None) {
+                if free && plant.way(nodes, form.length() * length, &taper, None).is_some() {
                     // A longer curl is worth some of the way.
                     let score = length - 0.8 * (full - s);
                     if best.is_none_or(|(other, ..)| score > other) {
@@ -298,8 +295,7 @@ fn curled(plant: &Plant, stem: Stem, longest: f64) -> Stem {
         let node = pose.node(node);
         Node { s: node.s + s, ..node }
     }));
-    let end = nodes.last().map_or(0.0, |node| node.s);
-    Stem { nodes, end, side, ..stem }
+    Stem::new(0, None, side, nodes, stem.taper)
 }
 
 /// True if a stem lies in the free cells all along.

@@ -2,6 +2,7 @@
 //! M-015 to M-017).
 
 use super::particle::Node;
+use super::plait::Cut;
 use crate::geom::polyline::left_of;
 use kurbo::{BezPath, CubicBez, ParamCurve, Point, Vec2};
 
@@ -48,9 +49,32 @@ pub(super) struct Stem {
     pub taper: Taper,
     /// Where it is cut off, under the flower at its tip.
     pub end: f64,
+    /// Gaps where it goes under others, in order.
+    pub cuts: Vec<Cut>,
+}
+
+/// An end of a piece.
+#[derive(Clone, Copy, Debug)]
+struct End {
+    s: f64,
+    /// How much farther along it runs per unit to the left.
+    skew: f64,
+    round: bool,
 }
 
 impl Stem {
+    /// A stem without cuts.
+    pub fn new(
+        level: usize,
+        parent: Option<(usize, f64)>,
+        side: f64,
+        nodes: Vec<Node>,
+        taper: Taper,
+    ) -> Self {
+        let end = nodes.last().map_or(0.0, |node| node.s);
+        Stem { level, parent, side, nodes, taper, end, cuts: Vec::new() }
+    }
+
     /// Arc length in all.
     pub fn length(&self) -> f64 {
         self.nodes.last().map_or(0.0, |node| node.s)
@@ -90,49 +114,63 @@ impl Stem {
         nodes
     }
 
-    /// The centre line from the start to the cut.
+    /// The pieces that the cuts leave.
+    fn pieces(&self) -> Vec<(End, End)> {
+        // Nothing lies under the start of a main stem; a branch starts within its parent.
+        let mut from = End { s: 0.0, skew: 0.0, round: self.parent.is_none() };
+        let mut pieces = Vec::new();
+        for cut in &self.cuts {
+            let flat = |s: f64| End { s, skew: cut.skew, round: false };
+            if cut.from > from.s && cut.to < self.end {
+                pieces.push((from, flat(cut.from)));
+                from = flat(cut.to);
+            }
+        }
+        pieces.push((from, End { s: self.end, skew: 0.0, round: true }));
+        pieces
+    }
+
+    /// The centre line from the start to the end, without what is cut.
     pub fn centre_line(&self, tolerance: f64) -> BezPath {
-        let edge: Vec<Edge> = self
-            .between(0.0, self.end)
-            .iter()
-            .map(|node| Edge { s: node.s, p: node.p, d: node.along })
-            .collect();
         let mut path = BezPath::new();
-        path.move_to(edge[0].p);
-        append(&edge, tolerance, &mut path);
+        for (from, to) in self.pieces() {
+            let nodes = self.between(from.s, to.s);
+            let edge: Vec<Edge> =
+                nodes.iter().map(|node| Edge { s: node.s, p: node.p, d: node.along }).collect();
+            path.move_to(edge[0].p);
+            append(&edge, tolerance, &mut path);
+        }
         path
     }
 
-    /// The outline from the start to the cut, with a round end, and a round start if nothing
-    /// lies under it.
+    /// The outline from the start to the end, without what is cut.
     pub fn outline(&self, tolerance: f64) -> BezPath {
-        self.piece(0.0, self.end, (self.parent.is_none(), true), tolerance)
+        let mut path = BezPath::new();
+        for (from, to) in self.pieces() {
+            self.piece(from, to, tolerance, &mut path);
+        }
+        path
     }
 
-    /// The outline of a piece, its ends round or flat.
-    pub fn piece(
-        &self,
-        from: f64,
-        to: f64,
-        (round_start, round_end): (bool, bool),
-        tolerance: f64,
-    ) -> BezPath {
-        let nodes = self.between(from, to);
-        let left: Vec<Edge> = nodes.iter().map(|node| self.edge(node, 1.0)).collect();
-        let mut right: Vec<Edge> = nodes.iter().map(|node| self.edge(node, -1.0)).collect();
+    fn piece(&self, from: End, to: End, tolerance: f64, path: &mut BezPath) {
+        let shift = |end: End, side: f64| end.s + side * end.skew * self.width(end.s) / 2.0;
+        let edge = |side: f64| -> Vec<Edge> {
+            let nodes = self.between(shift(from, side), shift(to, side));
+            nodes.iter().map(|node| self.edge(node, side)).collect()
+        };
+        let left = edge(1.0);
+        let mut right = edge(-1.0);
         right.reverse();
         right.iter_mut().for_each(|edge| (edge.s, edge.d) = (-edge.s, -edge.d));
-        let mut path = BezPath::new();
+        let (first, last) = (self.at(from.s), self.at(to.s));
         path.move_to(left[0].p);
-        append(&left, tolerance, &mut path);
-        let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
-        end(&mut path, right[0].p, last.along, round_end);
-        append(&right, tolerance, &mut path);
-        if round_start {
-            end(&mut path, left[0].p, -first.along, true);
+        append(&left, tolerance, path);
+        end(path, right[0].p, last.along, to.round);
+        append(&right, tolerance, path);
+        if from.round {
+            end(path, left[0].p, -first.along, true);
         }
         path.close_path();
-        path
     }
 
     /// A point of an edge and how it moves with s.
@@ -222,9 +260,8 @@ mod tests {
                 curvature: node.curvature / size,
             })
             .collect();
-        let end = nodes.last().unwrap().s;
         let taper = Taper { start: size / 40.0, tip: size / 400.0, power: 1.0 };
-        Stem { level: 0, parent: None, side: 1.0, nodes, taper, end }
+        Stem::new(0, None, 1.0, nodes, taper)
     }
 
     #[test]
