@@ -75,7 +75,29 @@ impl Shapes {
     /// Where ornament may be in a container: `gap` from what is fixed, `edge` from the outline.
     /// `None` if nothing is left.
     pub fn free(&self, container: usize, gap: f64, edge: f64) -> Option<Region> {
+        self.free_in(&self.containers[container], gap, edge)
+    }
+
+    /// The same in a band that goes on to the left and to the right: the container between two
+    /// copies of itself.
+    pub fn free_repeated(&self, container: usize, gap: f64, edge: f64) -> Option<Region> {
         let shape = &self.containers[container];
+        // The copies overlap by less than anyone sees, or rounding would leave a hairline.
+        let period = bounding_box(shape)?.width() - 2.0 * self.tolerance;
+        let copy = |by: f64| -> Vec<Contour> {
+            let moved = |contour: &Contour| contour.iter().map(|&p| Point::new(p.x + by, p.y)).collect();
+            shape.iter().map(moved).collect()
+        };
+        let band = boolean::union(&boolean::union(shape, &copy(period)), &copy(-period));
+        self.free_in(&band, gap, edge)
+    }
+
+    /// Left end and width of a container.
+    pub fn span(&self, container: usize) -> (f64, f64) {
+        bounding_box(&self.containers[container]).map_or((0.0, 0.0), |bounds| (bounds.x0, bounds.width()))
+    }
+
+    fn free_in(&self, shape: &[Contour], gap: f64, edge: f64) -> Option<Region> {
         // Chords may lie on the wrong side of a curve by the tolerance.
         let distance = (gap - edge).max(0.0) + self.tolerance;
         let clear = boolean::offset(&near(&self.fixed, shape, gap), distance);

@@ -7,7 +7,7 @@
 use crate::geom::boolean::Contour;
 use crate::geom::distance::{covered, squared_distances};
 use crate::geom::region::Region;
-use kurbo::{Point, Rect};
+use kurbo::Point;
 
 /// Half the diagonal of a cell, in cells.
 const HALF_DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -90,12 +90,13 @@ impl Grid {
 }
 
 impl Cells {
-    /// Free cells inside a region. `period` joins its left and right ends.
-    pub fn new(region: &Region, size: f64, period: Option<f64>) -> Self {
+    /// Free cells inside a region. `span`, a left end and a width, is what repeats sideways.
+    pub fn new(region: &Region, size: f64, span: Option<(f64, f64)>) -> Self {
         let bounds = region.bounds();
+        let origin = Point::new(span.map_or(bounds.x0, |(left, _)| left), bounds.y0);
         // A whole number of cells in a period, so that the join is like any other place.
-        let (size, wrap) = match period {
-            Some(period) => {
+        let (size, wrap) = match span {
+            Some((_, period)) => {
                 let columns = (period / size).ceil().max(1.0);
                 (period / columns, columns as usize)
             }
@@ -104,40 +105,42 @@ impl Cells {
         let count = |side: f64| (side / size).ceil() as usize + 1;
         let columns = if wrap > 0 { wrap } else { count(bounds.width()) };
         let rows = count(bounds.height());
-        let inside = covered(region.contours(), bounds.origin(), size, columns, rows);
+        let inside = covered(region.contours(), origin, size, columns, rows);
         let owners = inside.iter().map(|&inside| if inside { Owner::FREE } else { Owner::OUTSIDE }).collect();
         let places = vec![0.0; columns * rows];
-        let grid = Grid { origin: bounds.origin(), size, columns, rows, wrap };
+        let grid = Grid { origin, size, columns, rows, wrap };
         let mut cells = Cells { grid, owners, places };
         // What the edge passes near is outside for certain.
         for contour in region.contours() {
-            cells.close_edge(contour, bounds, period.is_some());
+            cells.close_edge(contour);
         }
         cells
     }
 
     /// The side of cells for a region: fine against the thinnest of what is drawn, but not
     /// more of them than `most`.
-    pub fn size_for(bounds: Rect, wanted: f64, most: f64) -> f64 {
-        wanted.max((bounds.area() / most).sqrt())
+    pub fn size_for(area: f64, wanted: f64, most: f64) -> f64 {
+        wanted.max((area / most).sqrt())
     }
 
-    fn close_edge(&mut self, contour: &Contour, bounds: Rect, repeats: bool) {
+    fn close_edge(&mut self, contour: &Contour) {
         let Some(&last) = contour.last() else { return };
+        let (left, right) =
+            (self.grid.origin.x, self.grid.origin.x + self.grid.columns as f64 * self.grid.size);
         let mut previous = last;
         for &p in contour {
-            // The two ends of a repeat are no edges.
-            let at_end = |x: f64| (previous.x - x).abs() + (p.x - x).abs() < 1e-3 * bounds.width();
-            if !(repeats && (at_end(bounds.x0) || at_end(bounds.x1))) {
-                let apart = 0.5 * self.grid.size;
-                let pieces = (previous.distance(p) / apart).ceil().clamp(1.0, 1e5);
-                for k in 0..pieces as usize {
-                    let at = previous.lerp(p, k as f64 / pieces);
-                    self.grid.near(at, self.grid.reach(0.0, apart), |i| {
-                        i.into_iter().for_each(|i| self.owners[i] = Owner::OUTSIDE);
-                        true
-                    });
+            let apart = 0.5 * self.grid.size;
+            let pieces = (previous.distance(p) / apart).ceil().clamp(1.0, 1e5);
+            for k in 0..pieces as usize {
+                let at = previous.lerp(p, k as f64 / pieces);
+                // What repeats goes on beyond its span, where its edge is no edge of ours.
+                if self.grid.wrap > 0 && !(left..=right).contains(&at.x) {
+                    continue;
                 }
+                self.grid.near(at, self.grid.reach(0.0, apart), |i| {
+                    i.into_iter().for_each(|i| self.owners[i] = Owner::OUTSIDE);
+                    true
+                });
             }
             previous = p;
         }

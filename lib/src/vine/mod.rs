@@ -40,6 +40,7 @@ use params::Sizes;
 use particle::Charge;
 use rinceau_format::{Artwork, Error, Scene};
 use std::collections::BTreeMap;
+use stem::Stem;
 
 /// Stems of one container at most.
 pub const MOST_STEMS: usize = 60_000;
@@ -140,23 +141,33 @@ impl Container<'_> {
 
     /// The free cells.
     fn cells(&self, params: &Params, sizes: &Sizes) -> Option<Cells> {
-        let region = self.shapes.free(self.index, sizes.gap, sizes.edge)?;
+        let (left, width) = self.shapes.span(self.index);
+        let free = if params.repeat { Shapes::free_repeated } else { Shapes::free };
+        let region = free(self.shapes, self.index, sizes.gap, sizes.edge)?;
         // As fine as the thinnest twig.
-        let size = Cells::size_for(region.bounds(), 0.14 * sizes.width, MOST_CELLS);
-        let period = params.repeat.then(|| region.bounds().width());
-        Some(Cells::new(&region, size, period))
+        let size = Cells::size_for(width * region.bounds().height(), 0.14 * sizes.width, MOST_CELLS);
+        Some(Cells::new(&region, size, params.repeat.then_some((left, width))))
     }
 
     /// Plants the main stems.
     fn start(&self, plant: &mut Plant, inradius: f64, rng: &mut Rng) {
         let drawn =
             self.scene.stems.iter().flat_map(|stem| start::drawn(&stem.path, plant.taper(plant.sizes.width)));
-        let mut drawn: Vec<_> = drawn.filter(|stem| start::is_inside(&plant.cells, stem)).collect();
+        let mut drawn: Vec<Stem> = drawn.filter(|stem| start::is_inside(&plant.cells, stem)).collect();
         let seeds =
             self.scene.seeds.iter().map(|seed| seed.at).filter(|&at| plant.cells.owner(at) == Owner::FREE);
         let mut seeds: Vec<Option<Point>> = seeds.map(Some).collect();
         if drawn.is_empty() && seeds.is_empty() {
-            seeds.push(None);
+            if plant.params.repeat {
+                drawn.extend(start::wave(plant, self.shapes.span(self.index), inradius));
+            }
+            if drawn.is_empty() {
+                seeds.push(None);
+            }
+        }
+        if plant.params.repeat {
+            // Where the copies join, the end of one is the start of the next.
+            drawn.iter_mut().for_each(|stem| stem.taper.tip = stem.taper.start);
         }
         for stem in drawn.drain(..) {
             plant.add(stem);

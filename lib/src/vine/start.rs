@@ -111,6 +111,30 @@ fn bottom(cells: &Cells, width: f64) -> Vec<Point> {
         .collect()
 }
 
+/// A wave from the left end of a band to its right end, with a whole number of periods.
+pub(super) fn wave(plant: &Plant, (left, width): (f64, f64), inradius: f64) -> Option<Stem> {
+    let (clear, columns) = plant.cells.clearances();
+    let middles = (0..clear.len()).step_by(columns).map(|i| plant.cells.middle(i).y);
+    // The row that is farthest from anything at the left end is the middle of the band.
+    let at = |row: usize| clear[row * columns + columns / 2];
+    let row = (0..clear.len() / columns).max_by(|&a, &b| at(a).total_cmp(&at(b)))?;
+    let middle = middles.clone().nth(row)?;
+    const LONG: f64 = 4.4;
+    const HIGH: f64 = 0.46;
+    let periods = (width / (LONG * inradius)).round().max(1.0);
+    const PER_PERIOD: usize = 8;
+    let n = periods as usize * PER_PERIOD;
+    let point = |i: usize| {
+        let up = libm::sin(std::f64::consts::TAU * (i % PER_PERIOD) as f64 / PER_PERIOD as f64);
+        Point::new(left + width * i as f64 / n as f64, middle - HIGH * inradius * up)
+    };
+    let mut path = BezPath::new();
+    path.move_to(point(0));
+    (1..=n).for_each(|i| path.line_to(point(i)));
+    let stem = drawn(&path, plant.taper(plant.sizes.width)).pop()?;
+    is_inside(&plant.cells, &stem).then_some(stem)
+}
+
 /// What a shape offers a wandering particle: its free area in squares.
 struct Country<'a> {
     cells: &'a Cells,
