@@ -1,10 +1,11 @@
 //! Artwork to a result layer.
 
-use crate::artwork::{Artwork, Group, Item, Part};
+use crate::artwork::{Artwork, Group, Item, Part, Symbol};
 use crate::number::{path_data, write_number};
 use crate::recipe::Recipe;
-use crate::vocabulary::{INKSCAPE, NAMESPACE, SODIPODI, SVG};
+use crate::vocabulary::{INKSCAPE, NAMESPACE, SODIPODI, SVG, XLINK};
 use kurbo::Affine;
+use std::borrow::Cow;
 use std::fmt::Write;
 
 /// Inkscape's merge of an extension's result is quadratic in siblings, so they come in groups.
@@ -68,20 +69,51 @@ pub(crate) fn recipe_attributes(out: &mut String, recipe: &Recipe, prefix: &str)
 /// Everything between the layer's tags.
 pub(crate) fn content(artwork: &Artwork, target: &Target) -> String {
     let mut out = String::new();
+    if !artwork.symbols.is_empty() {
+        symbols(&mut out, artwork, target);
+    }
     for group in &artwork.groups {
-        sublayer(&mut out, group, artwork.decimals, target);
+        sublayer(&mut out, group, artwork, target);
     }
     out.push_str(target.newline);
     out
 }
 
-fn sublayer(out: &mut String, group: &Group, decimals: usize, target: &Target) {
+/// What clones repeat, in definitions of the layer's own.
+fn symbols(out: &mut String, artwork: &Artwork, target: &Target) {
+    let (prefix, newline) = (target.svg_prefix, target.newline);
+    let _ = write!(out, "{newline}<{prefix}defs");
+    attribute(out, "id", &format!("{}-symbols", target.id));
+    out.push('>');
+    // Clones carry the pose, and with it the way to the layer's coordinates.
+    let own = Target { inverse: Affine::IDENTITY, ..*target };
+    for symbol in &artwork.symbols {
+        let _ = write!(out, "{newline}<{prefix}g");
+        attribute(out, "id", &symbol_id(target, symbol));
+        attribute(out, "inkscape:label", &symbol.name);
+        out.push('>');
+        // Of size 1, so their coordinates need more decimals than those of a page.
+        const DECIMALS: usize = 5;
+        symbol.parts.iter().for_each(|part| write_part(out, part, None, DECIMALS, &own));
+        let _ = write!(out, "</{prefix}g>");
+    }
+    let _ = write!(out, "{newline}</{prefix}defs>");
+}
+
+fn symbol_id(target: &Target, symbol: &Symbol) -> String {
+    format!("{}-symbol-{}", target.id, symbol.name)
+}
+
+fn sublayer(out: &mut String, group: &Group, artwork: &Artwork, target: &Target) {
     let (prefix, newline) = (target.svg_prefix, target.newline);
     let id = format!("{}-{}", target.id, group.name);
     let _ = write!(out, "{newline}<{prefix}g");
     attribute(out, "id", &id);
     attribute(out, "inkscape:groupmode", "layer");
     attribute(out, "inkscape:label", &group.name);
+    if group.items.iter().any(|item| item.clone.is_some()) {
+        attribute(out, "xmlns:xlink", XLINK);
+    }
     if group.hidden {
         attribute(out, "style", "display:none");
     }
@@ -95,7 +127,7 @@ fn sublayer(out: &mut String, group: &Group, decimals: usize, target: &Target) {
         }
         for (i, item) in chunk.iter().enumerate() {
             out.push_str(newline);
-            write_item(out, item, &format!("{id}-{}", chunk_index * SIBLINGS + i + 1), decimals, target);
+            write_item(out, item, &format!("{id}-{}", chunk_index * SIBLINGS + i + 1), artwork, target);
         }
         if grouped {
             let _ = write!(out, "{newline}</{prefix}g>");
@@ -104,7 +136,18 @@ fn sublayer(out: &mut String, group: &Group, decimals: usize, target: &Target) {
     let _ = write!(out, "{newline}</{prefix}g>");
 }
 
-fn write_item(out: &mut String, item: &Item, id: &str, decimals: usize, target: &Target) {
+fn write_item(out: &mut String, item: &Item, id: &str, artwork: &Artwork, target: &Target) {
+    let decimals = artwork.decimals;
+    if let Some((symbol, pose)) = item.clone {
+        let _ = write!(out, "<{}use", target.svg_prefix);
+        attribute(out, "id", id);
+        attribute(out, "rinceau:of", &item.of);
+        attribute(out, "transform", &matrix(target.inverse * pose, decimals + CLONE_DECIMALS));
+        // The old name as well: programs of before SVG 2 know only that.
+        attribute(out, "xlink:href", &format!("#{}", symbol_id(target, &artwork.symbols[symbol])));
+        out.push_str("/>");
+        return;
+    }
     if let [part] = item.parts.as_slice() {
         write_part(out, part, Some((id, &item.of)), decimals, target);
         return;
@@ -127,29 +170,34 @@ fn write_part(out: &mut String, part: &Part, item: Option<(&str, &str)>, decimal
         attribute(out, "rinceau:of", of);
     }
     let transform = target.inverse * part.transform;
-    let path = if part.transform == Affine::IDENTITY {
+    let path = if part.transform == Affine::IDENTITY && target.inverse == Affine::IDENTITY {
+        Cow::Borrowed(&part.path)
+    } else if part.transform == Affine::IDENTITY {
         // Made in root units: no transform attribute is needed, the points are moved instead.
-        target.inverse * part.path.clone()
+        Cow::Owned(target.inverse * part.path.clone())
     } else {
         if transform != Affine::IDENTITY {
-            attribute(out, "transform", &matrix(transform));
+            attribute(out, "transform", &matrix(transform, MATRIX_DECIMALS));
         }
-        part.path.clone()
+        Cow::Borrowed(&part.path)
     };
     attribute(out, "style", &part.style.css());
     attribute(out, "d", &path_data(&path, decimals));
     out.push_str("/>");
 }
 
-fn matrix(transform: Affine) -> String {
-    // Coefficients multiply coordinates of a whole page, so they carry more decimals.
-    const DECIMALS: usize = 9;
+/// Coefficients multiply coordinates of a whole page, so they carry more decimals.
+const MATRIX_DECIMALS: usize = 9;
+/// Those of a clone multiply coordinates of about 1.
+const CLONE_DECIMALS: usize = 1;
+
+fn matrix(transform: Affine, decimals: usize) -> String {
     let mut text = String::from("matrix(");
     for (i, c) in transform.as_coeffs().into_iter().enumerate() {
         if i > 0 {
             text.push(' ');
         }
-        write_number(&mut text, c, DECIMALS);
+        write_number(&mut text, c, decimals);
     }
     text.push(')');
     text
@@ -157,12 +205,19 @@ fn matrix(transform: Affine) -> String {
 
 /// Appends ` name="value"`, escaped.
 pub(crate) fn attribute(out: &mut String, name: &str, value: &str) {
-    let _ = write!(out, " {name}=\"{}\"", escaped(value));
+    let _ = write!(out, " {name}=\"");
+    out.push_str(&escaped(value));
+    out.push('"');
 }
 
 /// A value escaped for double quotes. Characters that XML forbids are dropped: they cannot
 /// come from a drawing, only from a shell.
-pub(crate) fn escaped(value: &str) -> String {
+pub(crate) fn escaped(value: &str) -> Cow<'_, str> {
+    // Path data is most of a layer and has nothing to escape.
+    let is_plain = |b: u8| !matches!(b, b'&' | b'<' | b'>' | b'"' | 0..b' ' | 0x80..);
+    if value.bytes().all(is_plain) {
+        return Cow::Borrowed(value);
+    }
     let mut out = String::with_capacity(value.len());
     for c in value.chars() {
         match c {
@@ -177,5 +232,5 @@ pub(crate) fn escaped(value: &str) -> String {
             c => out.push(c),
         }
     }
-    out
+    Cow::Owned(out)
 }

@@ -346,7 +346,11 @@ fn free_id(xml: &roxmltree::Document, label: &str) -> String {
 /// An attribute value escaped for the quotes that stand around it.
 fn quoted_for(text: &str, range: Range<usize>, value: &str) -> String {
     let escaped = escaped(value);
-    if text.as_bytes().get(range.end) == Some(&b'\'') { escaped.replace('\'', "&#39;") } else { escaped }
+    if text.as_bytes().get(range.end) == Some(&b'\'') {
+        escaped.replace('\'', "&#39;")
+    } else {
+        escaped.into_owned()
+    }
 }
 
 /// True if the element itself, and not one around it, declares the prefix.

@@ -80,16 +80,13 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
             };
             Part { path, transform: Affine::IDENTITY, style }
         });
-        elements.items.push(Item { of: template.id.clone(), parts: parts.collect() });
+        elements.items.push(Item::new(template.id.clone(), parts.collect()));
         spines.items.push(spine_item(&placed.spine));
     }
     let dot = |filler: &Filler| {
         // The accent, so that the smallest shapes are seen as one family.
         let style = Style::filled(made.palette(filler.field, scene)[2]);
-        Item {
-            of: "dot".into(),
-            parts: vec![Part { path: filler.path(), transform: Affine::IDENTITY, style }],
-        }
+        Item::new("dot", vec![Part { path: filler.path(), transform: Affine::IDENTITY, style }])
     };
     let fillers =
         Group { name: "fillers".into(), items: made.fillers.iter().map(dot).collect(), ..Group::default() };
@@ -98,7 +95,7 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
         items: scene
             .fixed
             .iter()
-            .map(|fixed| Item { of: fixed.source.id.clone(), parts: fixed.parts.clone() })
+            .map(|fixed| Item::new(fixed.source.id.clone(), fixed.parts.clone()))
             .collect(),
         ..Group::default()
     };
@@ -107,7 +104,7 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
     let mut warnings = scene.warnings.clone();
     warnings.extend(prepared.warnings.iter().cloned());
     warnings.extend(made.bare_spines());
-    Artwork { groups, complete, warnings, counts: made.counts(), decimals }
+    Artwork { symbols: Vec::new(), groups, complete, warnings, counts: made.counts(), decimals }
 }
 
 /// A built-in part in a palette's tone. Its holes are holes, so one tone is enough.
@@ -125,5 +122,5 @@ fn spine_item(points: &[Point]) -> Item {
     let mut style = Style::filled("none");
     style.set("stroke", "#ff0000");
     style.set("stroke-width", &format!("{:.4}", polyline::length(points) / 200.0));
-    Item { of: "spine".into(), parts: vec![Part { path, transform: Affine::IDENTITY, style }] }
+    Item::new("spine", vec![Part { path, transform: Affine::IDENTITY, style }])
 }

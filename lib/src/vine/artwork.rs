@@ -1,13 +1,14 @@
 //! A grown plant to an artwork with its sublayers.
 
-use super::clip_art::Library;
+use super::clip_art::{Art, Library};
 use super::grow::Plant;
 use super::stem::Stem;
 use crate::geom::boolean;
 use crate::geom::flatten::flatten;
 use crate::palette::palette;
 use kurbo::{Affine, BezPath};
-use rinceau_format::{Group, Item, Part, Scene, Style};
+use rinceau_format::{Group, Item, Part, Scene, Style, Symbol};
+use std::collections::BTreeMap;
 
 /// Sublayers of one run, filled plant by plant.
 #[derive(Default)]
@@ -16,22 +17,21 @@ pub(super) struct Layers {
     pub elements: Group,
     pub fixed: Group,
     pub centre_lines: Group,
+    pub symbols: Vec<Symbol>,
 }
 
 impl Layers {
     pub fn new(scene: &Scene) -> Self {
         let named = |name: &str, hidden| Group { name: name.into(), hidden, ..Group::default() };
         let mut fixed = named("fixed", false);
-        fixed.items = scene
-            .fixed
-            .iter()
-            .map(|fixed| Item { of: fixed.source.id.clone(), parts: fixed.parts.clone() })
-            .collect();
+        fixed.items =
+            scene.fixed.iter().map(|fixed| Item::new(fixed.source.id.clone(), fixed.parts.clone())).collect();
         Layers {
             stems: named("stems", false),
             elements: named("elements", false),
             fixed,
             centre_lines: named("spines", true),
+            symbols: Vec::new(),
         }
     }
 
@@ -40,24 +40,30 @@ impl Layers {
         let tones = palette(&plant.params.palette, fill);
         let tolerance = plant.sizes.width / 400.0;
         self.add_stems(plant, tones[0], tolerance);
+        // Built-in art has the tones of its container; what the artist drew is the same in all.
+        let mut symbols: BTreeMap<usize, usize> = BTreeMap::new();
         for placed in &plant.arts {
             let art = &library.arts[placed.art];
-            let parts = art.parts.iter().map(|(path, style)| {
-                let mut style = style.scaled(placed.size, decimals);
-                if art.builtin {
-                    repaint(&mut style, tones);
-                }
-                Part { path: placed.pose * path.clone(), transform: Affine::IDENTITY, style }
+            if plant.params.copies {
+                let pose = Affine::IDENTITY;
+                let moved = |part: Part| Part { path: placed.pose * part.path, transform: pose, ..part };
+                let parts = painted(art, placed.size, tones, decimals).into_iter().map(moved).collect();
+                self.elements.items.push(Item::new(art.id.clone(), parts));
+                continue;
+            }
+            let symbol = *symbols.entry(placed.art).or_insert_with(|| {
+                let name = format!("{}{}", art.id, self.symbols.len() + 1);
+                self.symbols.push(Symbol { name, parts: painted(art, 1.0, tones, SYMBOL_DECIMALS) });
+                self.symbols.len() - 1
             });
-            self.elements.items.push(Item { of: art.id.clone(), parts: parts.collect() });
+            self.elements.items.push(Item::cloned(art.id.clone(), symbol, placed.pose));
         }
     }
 
     fn add_stems(&mut self, plant: &Plant, tone: &str, tolerance: f64) {
         let name = |stem: &Stem| if stem.level == 0 { "stem" } else { "branch" };
-        let item = |of: &str, path: BezPath, style: Style| Item {
-            of: of.into(),
-            parts: vec![Part { path, transform: Affine::IDENTITY, style }],
+        let item = |of: &str, path: BezPath, style: Style| {
+            Item::new(of, vec![Part { path, transform: Affine::IDENTITY, style }])
         };
         let line = |width: f64, colour: &str| {
             let mut style = Style::filled("none");
@@ -104,12 +110,27 @@ impl Layers {
         }
     }
 
-    /// The sublayers that hold something, in drawing order.
-    pub fn into_groups(self) -> Vec<Group> {
+    /// The sublayers that hold something, in drawing order, and what their clones repeat.
+    pub fn into_parts(self) -> (Vec<Group>, Vec<Symbol>) {
         let mut groups = vec![self.stems, self.elements, self.fixed, self.centre_lines];
         groups.retain(|group| !group.items.is_empty());
-        groups
+        (groups, self.symbols)
     }
+}
+
+/// Decimals of stroke widths in clip art of size 1.
+const SYMBOL_DECIMALS: usize = 6;
+
+/// Clip art in its colours, its strokes scaled.
+fn painted(art: &Art, size: f64, tones: [&str; 3], decimals: usize) -> Vec<Part> {
+    let part = |(path, style): &(BezPath, Style)| {
+        let mut style = style.scaled(size, decimals);
+        if art.builtin {
+            repaint(&mut style, tones);
+        }
+        Part { path: path.clone(), transform: Affine::IDENTITY, style }
+    };
+    art.parts.iter().map(part).collect()
 }
 
 /// The four greys of built-in clip art stand for the tones of a palette.

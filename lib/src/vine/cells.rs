@@ -56,6 +56,12 @@ pub(super) struct Cells {
     places: Vec<f32>,
 }
 
+/// Rounded down; the processor's own instruction for it is not on every machine.
+fn floor(x: f64) -> i64 {
+    let whole = x as i64;
+    whole - i64::from((whole as f64) > x)
+}
+
 impl Grid {
     /// The radius about a sample that stands for a disc, when samples are `apart`.
     fn reach(&self, radius: f64, apart: f64) -> f64 {
@@ -67,12 +73,10 @@ impl Grid {
     fn near(&self, at: Point, radius: f64, mut visit: impl FnMut(Option<usize>) -> bool) -> bool {
         let (x, y) = ((at.x - self.origin.x) / self.size - 0.5, (at.y - self.origin.y) / self.size - 0.5);
         let r = radius / self.size;
-        let (low, high) = ((y - r).ceil() as i64, (y + r).floor() as i64);
-        for row in low..=high {
+        for row in -floor(r - y)..=floor(y + r) {
             let dy = row as f64 - y;
             let half = (r * r - dy * dy).max(0.0).sqrt();
-            let (left, right) = ((x - half).ceil() as i64, (x + half).floor() as i64);
-            for column in left..=right {
+            for column in -floor(half - x)..=floor(x + half) {
                 if !visit(self.index(column, row)) {
                     return false;
                 }
@@ -161,20 +165,23 @@ impl Cells {
         })
     }
 
-    /// Claims a disc and the gap around it for a thing; `place` is the arc length there.
-    pub fn claim(&mut self, id: u32, at: Point, radius: f64, apart: f64, gap: f64, place: f64) {
-        let body = self.grid.reach(radius, apart);
+    /// Claims a disc for a thing; `place` is the arc length there.
+    pub fn claim(&mut self, id: u32, at: Point, radius: f64, apart: f64, place: f64) {
         let (owners, places) = (&mut self.owners, &mut self.places);
-        // Cells of the gap that others have are theirs already; the body is never in doubt.
-        self.grid.near(at, body + gap, |i| {
-            if let Some(i) = i.filter(|&i| owners[i] == Owner::FREE) {
-                (owners[i], places[i]) = (Owner::of(id, false), place as f32);
+        self.grid.near(at, self.grid.reach(radius, apart), |i| {
+            if let Some(i) = i.filter(|&i| owners[i] != Owner::OUTSIDE && !owners[i].is_body()) {
+                (owners[i], places[i]) = (Owner::of(id, true), place as f32);
             }
             true
         });
-        self.grid.near(at, body, |i| {
-            if let Some(i) = i.filter(|&i| owners[i] != Owner::OUTSIDE && !owners[i].is_body()) {
-                (owners[i], places[i]) = (Owner::of(id, true), place as f32);
+    }
+
+    /// Claims the gap around a disc: what others have there is theirs already.
+    pub fn claim_gap(&mut self, id: u32, at: Point, radius: f64, apart: f64, place: f64) {
+        let (owners, places) = (&mut self.owners, &mut self.places);
+        self.grid.near(at, self.grid.reach(radius, apart), |i| {
+            if let Some(i) = i.filter(|&i| owners[i] == Owner::FREE) {
+                (owners[i], places[i]) = (Owner::of(id, false), place as f32);
             }
             true
         });
@@ -209,6 +216,11 @@ impl Cells {
         (unframed, self.grid.columns)
     }
 
+    /// Radius of the largest circle that is free.
+    pub fn inradius(&self) -> f64 {
+        self.clearances().0.into_iter().fold(0.0, f64::max).sqrt() * self.grid.size
+    }
+
     /// The middle of a cell.
     pub fn middle(&self, i: usize) -> Point {
         let (column, row) = ((i % self.grid.columns) as f64, (i / self.grid.columns) as f64);
@@ -222,6 +234,6 @@ impl Cells {
     pub fn cell(&self, at: Point) -> Option<usize> {
         let (x, y) =
             ((at.x - self.grid.origin.x) / self.grid.size, (at.y - self.grid.origin.y) / self.grid.size);
-        self.grid.index(x.floor() as i64, y.floor() as i64)
+        self.grid.index(floor(x), floor(y))
     }
 }

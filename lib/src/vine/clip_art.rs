@@ -117,7 +117,10 @@ impl Art {
     /// Claims what it covers.
     pub fn claim(&self, pose: Affine, size: f64, cells: &mut Cells, id: u32, gap: f64) {
         for &(p, apart) in &self.samples {
-            cells.claim(id, pose * p, 0.0, apart * size, gap, 0.0);
+            cells.claim(id, pose * p, 0.0, apart * size, 0.0);
+        }
+        for &(p, apart) in &self.samples {
+            cells.claim_gap(id, pose * p, gap, apart * size, 0.0);
         }
     }
 }
@@ -167,6 +170,8 @@ fn samples(contours: &[Contour]) -> Vec<(Point, f64)> {
             previous = p;
         }
     }
+    // What is farthest from the stem meets others first.
+    samples.sort_by(|(p, _), (q, _)| q.to_vec2().hypot2().total_cmp(&p.to_vec2().hypot2()));
     let Some(region) = Region::new(contours.to_vec()) else { return samples };
     let bounds = region.bounds();
     let count = |side: f64| (side / INSIDE).ceil() as usize;

@@ -65,12 +65,11 @@ struct Site {
     longest: f64,
 }
 
-/// A site and the length of the branch that fits there, ordered by that.
+/// A site and the length to try there next, the longest first.
 #[derive(Clone, Copy, Debug)]
 struct Offer {
-    rank: f64,
-    order: usize,
     length: f64,
+    order: usize,
     site: Site,
 }
 
@@ -90,7 +89,7 @@ impl PartialOrd for Offer {
 
 impl Ord for Offer {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.rank.total_cmp(&other.rank).then(other.order.cmp(&self.order))
+        self.length.total_cmp(&other.length).then(other.order.cmp(&self.order))
     }
 }
 
@@ -145,9 +144,13 @@ impl<'a> Plant<'a> {
         // A curl ends where it gets tighter than it is wide.
         let tight = stem.nodes.iter().find(|node| node.curvature.abs() * stem.width(node.s) > 1.3);
         stem.end = tight.map_or(stem.length(), |node| node.s).max(0.5 * stem.length());
-        let discs = Discs::new(&stem.nodes, stem.end, self.cells.size(), |s| stem.width(s));
-        for disc in discs {
-            self.cells.claim(id, disc.at, disc.radius, disc.apart, self.sizes.gap, disc.s);
+        let gap = self.sizes.gap;
+        for disc in discs(&stem, self.cells.size()) {
+            self.cells.claim(id, disc.at, disc.radius, disc.apart, disc.s);
+        }
+        // The gap may be a little wider between its samples.
+        for disc in discs(&stem, self.cells.size().max(0.4 * gap)) {
+            self.cells.claim_gap(id, disc.at, disc.radius + gap, 0.5 * disc.apart, disc.s);
         }
         self.stems.push(stem);
         index
@@ -182,8 +185,8 @@ impl<'a> Plant<'a> {
             if taken.len() >= limit || taken.iter().any(close) || self.is_near_crossing(site.parent, site.s) {
                 continue;
             }
-            match self.fitting(&site, offer.length) {
-                Some((length, branch, crossings)) if length >= offer.length => {
+            match self.fitting(&site, offer.length, offer.length * SHORTER * 1.01) {
+                Some((_, branch, crossings)) => {
                     forks[site.parent].push((site.s, site.side));
                     self.crossings = crossings;
                     let index = self.grow(branch, &site);
@@ -193,14 +196,16 @@ impl<'a> Plant<'a> {
                     }
                     self.offer(index, &mut heap, &mut order);
                 }
-                Some((length, ..)) => heap.push(Offer { rank: length, length, ..offer }),
+                None if offer.length * SHORTER > self.shortest() => {
+                    heap.push(Offer { length: offer.length * SHORTER, ..offer });
+                }
                 None => {}
             }
         }
         true
     }
 
-    /// Places on a stem, with what fits there now.
+    /// Places on a stem, with the longest that may leave there.
     fn offer(&self, parent: usize, heap: &mut BinaryHeap<Offer>, order: &mut usize) {
         let stem = &self.stems[parent];
         if stem.level + 1 >= self.params.levels {
@@ -213,10 +218,8 @@ impl<'a> Plant<'a> {
         while s < 0.96 * length {
             for side in [1.0, -1.0] {
                 let site = Site { parent, s, side, longest: self.longest(parent, s) };
-                if let Some((length, ..)) = self.fitting(&site, site.longest) {
-                    *order += 1;
-                    heap.push(Offer { rank: length, order: *order, length, site });
-                }
+                *order += 1;
+                heap.push(Offer { length: site.longest, order: *order, site });
             }
             s += step;
         }
@@ -249,7 +252,7 @@ impl<'a> Plant<'a> {
                 let s = (i + 1) as f64 / (count + 1) as f64 * length;
                 let side = if i % 2 == 0 { first } else { -first };
                 let site = Site { parent, s, side, longest: self.longest(parent, s) };
-                if let Some((_, branch, crossings)) = self.fitting(&site, site.longest) {
+                if let Some((_, branch, crossings)) = self.fitting(&site, site.longest, self.shortest()) {
                     self.crossings = crossings;
                     self.grow(branch, &site);
                     if self.stems.len() >= most {
@@ -262,14 +265,18 @@ impl<'a> Plant<'a> {
         true
     }
 
-    /// The longest branch at a site that touches nothing, `longest` at most.
-    fn fitting(&self, site: &Site, longest: f64) -> Option<(f64, Stem, Vec<Crossing>)> {
+    /// Nothing shorter grows: a twig as thin as the gap is as thin as anything should be.
+    fn shortest(&self) -> f64 {
+        4.6 * self.sizes.width
+    }
+
+    /// The longest branch at a site that touches nothing, `longest` at most and `shortest` at
+    /// least.
+    fn fitting(&self, site: &Site, longest: f64, shortest: f64) -> Option<(f64, Stem, Vec<Crossing>)> {
         let parent = &self.stems[site.parent];
         let level = parent.level + 1;
         let start = parent.at(site.s);
         let width = parent.width(site.s);
-        // A twig as thin as the gap is as thin as anything should be.
-        let shortest = (1.6 * SLENDER).max(9.0) * 0.22 * self.sizes.width;
         let mut length = longest;
         while length >= shortest {
             let taper = self.taper(width.min(length / SLENDER));
@@ -716,7 +723,7 @@ fn rotated(v: Vec2, angle: f64) -> Vec2 {
     Vec2::new(turn.x * v.x - turn.y * v.y, turn.y * v.x + turn.x * v.y)
 }
 
-/// Discs that cover a stem.
+/// A disc under a stem.
 struct Disc {
     at: Point,
     radius: f64,
@@ -724,28 +731,28 @@ struct Disc {
     s: f64,
 }
 
-struct Discs;
-
-impl Discs {
-    fn new(nodes: &[Node], end: f64, size: f64, width: impl Fn(f64) -> f64) -> Vec<Disc> {
-        let mut discs = Vec::new();
-        for pair in nodes.windows(2) {
-            let (a, b) = (pair[0], pair[1]);
-            if a.s >= end {
-                break;
-            }
-            let count = ((b.s - a.s) / size).ceil().max(1.0);
-            for k in 0..count as usize {
-                let t = k as f64 / count;
-                let s = a.s + t * (b.s - a.s);
-                discs.push(Disc {
-                    at: a.p.lerp(b.p, t),
-                    radius: width(s) / 2.0,
-                    apart: (b.s - a.s) / count,
-                    s,
-                });
+/// Discs that cover a stem, about `apart` from each other.
+fn discs(stem: &Stem, apart: f64) -> Vec<Disc> {
+    let mut discs = Vec::new();
+    let mut before = 0.0;
+    for pair in stem.nodes.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        if a.s >= stem.end {
+            break;
+        }
+        let count = ((b.s - a.s) / apart).ceil().max(1.0);
+        for k in 0..count as usize {
+            let t = k as f64 / count;
+            let s = a.s + t * (b.s - a.s);
+            // Nodes are closer than needed where the stem curls up.
+            if s - before >= 0.75 * apart || s == 0.0 {
+                let radius = stem.width(s) / 2.0;
+                discs.push(Disc { at: a.p.lerp(b.p, t), radius, apart: (s - before).max(apart), s });
+                before = s;
             }
         }
-        discs
     }
+    let tip = stem.at(stem.end);
+    discs.push(Disc { at: tip.p, radius: stem.width(stem.end) / 2.0, apart, s: stem.end });
+    discs
 }

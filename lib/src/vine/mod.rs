@@ -79,7 +79,8 @@ pub fn generate(
         let remedy = "Make the stem width or the gap smaller";
         return Err(Error::new("nothing-fits", "No stem fits into the shape", remedy));
     }
-    Ok(Artwork { groups: layers.into_groups(), complete, warnings, counts, decimals: shapes.decimals() })
+    let (groups, symbols) = layers.into_parts();
+    Ok(Artwork { symbols, groups, complete, warnings, counts, decimals: shapes.decimals() })
 }
 
 /// One container of a run.
@@ -107,13 +108,14 @@ impl Container<'_> {
         let forks = self.library.choices(&params.forks, params.levels)?;
         let tips = self.library.choices(&params.tips, params.levels)?;
         progress.step("cells", 0.0);
-        let Some(inradius) = self.inradius() else { return Ok(None) };
+        let Some(rough) = self.rough_cells() else { return Ok(None) };
+        let inradius = rough.inradius();
         let sizes = Sizes::new(&params, self.shapes.areas[self.index], inradius, self.scene.px_per_unit);
         let Some(cells) = self.cells(&params, &sizes) else { return Ok(None) };
         let mut plant =
             Plant::new((&params, &sizes), (self.library, &charge), (forks, tips), cells, rng.fork());
         progress.step("stem", 0.0);
-        self.start(&mut plant, inradius, rng);
+        self.start(&mut plant, &rough, rng);
         progress.step("branches", 0.0);
         let mut finished = plant.branch(MOST_STEMS, |done| progress.step("branches", done));
         (0..plant.stems.len())
@@ -130,13 +132,12 @@ impl Container<'_> {
         Ok(Some(finished))
     }
 
-    /// Radius of the largest circle inside. `None` if there is no inside.
-    fn inradius(&self) -> Option<f64> {
+    /// A few cells, for a first look. `None` if there is no inside.
+    fn rough_cells(&self) -> Option<Cells> {
         const CELLS: f64 = 4e4;
         let region = self.shapes.free(self.index, 0.0, 0.0)?;
-        let size = (region.bounds().area() / CELLS).sqrt();
-        let (squared, _) = Cells::new(&region, size, None).clearances();
-        Some(squared.into_iter().fold(0.0, f64::max).sqrt() * size).filter(|&radius| radius > 0.0)
+        let size = Cells::size_for(region.bounds().area(), 0.0, CELLS);
+        Some(Cells::new(&region, size, None)).filter(|cells| cells.inradius() > 0.0)
     }
 
     /// The free cells.
@@ -150,7 +151,8 @@ impl Container<'_> {
     }
 
     /// Plants the main stems.
-    fn start(&self, plant: &mut Plant, inradius: f64, rng: &mut Rng) {
+    fn start(&self, plant: &mut Plant, rough: &Cells, rng: &mut Rng) {
+        let inradius = rough.inradius();
         let drawn =
             self.scene.stems.iter().flat_map(|stem| start::drawn(&stem.path, plant.taper(plant.sizes.width)));
         let mut drawn: Vec<Stem> = drawn.filter(|stem| start::is_inside(&plant.cells, stem)).collect();
@@ -176,7 +178,7 @@ impl Container<'_> {
             let stem = if plant.params.stem == "curl" {
                 start::curl(plant, seed, plant.sizes.length[0])
             } else {
-                start::wander(plant, seed, inradius, rng)
+                start::wander(plant, rough, seed, rng)
                     .or_else(|| start::curl(plant, seed, plant.sizes.length[0]))
             };
             if let Some(stem) = stem {

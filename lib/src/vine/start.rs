@@ -202,9 +202,10 @@ impl<'a> Country<'a> {
 }
 
 /// A stem that finds its way. `seed` is where it starts, if the artist says.
-pub(super) fn wander(plant: &Plant, seed: Option<Point>, inradius: f64, rng: &mut Rng) -> Option<Stem> {
+pub(super) fn wander(plant: &Plant, rough: &Cells, seed: Option<Point>, rng: &mut Rng) -> Option<Stem> {
+    let inradius = rough.inradius();
     let reach = 0.95 * inradius;
-    let country = Country::new(&plant.cells, reach);
+    let country = Country::new(rough, reach);
     let width = plant.sizes.width;
     let starts: Vec<Point> = (0..country.clear.len())
         .filter(|&i| {
@@ -217,7 +218,7 @@ pub(super) fn wander(plant: &Plant, seed: Option<Point>, inradius: f64, rng: &mu
     for _ in 0..TRIES {
         let index = (rng.unit() * starts.len() as f64) as usize;
         let at = seed.or(starts.get(index).copied())?;
-        let (score, nodes) = particle(&country, at, reach, width, rng);
+        let (score, nodes) = particle(&country, at, reach, 0.75 * width + plant.sizes.edge, rng);
         // Plants grow from the ground, if it makes no great difference.
         let score = score + 0.12 * (at.y - bounds.y0) / bounds.height().max(f64::MIN_POSITIVE);
         if nodes.len() > 8 && best.as_ref().is_none_or(|(other, _)| score > *other) {
@@ -229,8 +230,9 @@ pub(super) fn wander(plant: &Plant, seed: Option<Point>, inradius: f64, rng: &mu
     Some(curled(plant, Stem::new(0, None, 1.0, nodes, taper), 5.0 * inradius))
 }
 
-/// Runs one particle; what it comes near, less what it bends, is its score.
-fn particle(country: &Country, at: Point, reach: f64, width: f64, rng: &mut Rng) -> (f64, Vec<Node>) {
+/// Runs one particle, which ends where it comes `nearest` to a wall; what it comes near, less
+/// what it bends, is its score.
+fn particle(country: &Country, at: Point, reach: f64, nearest: f64, rng: &mut Rng) -> (f64, Vec<Node>) {
     let step = reach / 14.0;
     let inwards = country.uphill(at);
     let start = libm::atan2(inwards.y, inwards.x) + rng.between(-1.1, 1.1);
@@ -248,7 +250,7 @@ fn particle(country: &Country, at: Point, reach: f64, width: f64, rng: &mut Rng)
         let clear = country.clearance(p);
         // Coming back to itself it ends.
         let near_itself = |node: &Node| s - node.s > 2.6 * reach && node.p.distance(p) < 0.92 * reach;
-        if clear < 0.75 * width || nodes.iter().any(near_itself) {
+        if clear < nearest || nodes.iter().any(near_itself) {
             break;
         }
         let meander = charge * libm::sin(std::f64::consts::TAU * s / period + phase);
