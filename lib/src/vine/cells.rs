@@ -63,9 +63,11 @@ fn floor(x: f64) -> i64 {
 }
 
 impl Grid {
-    /// The radius about a sample that stands for a disc, when samples are `apart`.
+    /// The radius about samples `apart` from each other, so that all cells that a line between
+    /// them touches are found, if it is twice `radius` wide.
     fn reach(&self, radius: f64, apart: f64) -> f64 {
-        radius + HALF_DIAGONAL * self.size + 0.5 * apart
+        let half = radius + HALF_DIAGONAL * self.size;
+        (half * half + 0.25 * apart * apart).sqrt()
     }
 
     /// Visits the cells whose middle lies within a radius, `None` for those beyond the grid,

@@ -26,8 +26,10 @@ pub(super) struct Art {
     pub parts: Vec<(BezPath, Style)>,
     /// Distance from the origin to the farthest point.
     pub radius: f64,
-    /// Samples of what it covers, each with the distance to the next.
+    /// Samples of what it covers, each with the distance to the next: first the outline.
     samples: Vec<(Point, f64)>,
+    /// How many of them lie on the outline.
+    outline: usize,
     /// True if it grows around its origin, as a flower does.
     pub central: bool,
 }
@@ -81,6 +83,7 @@ impl Art {
         let contours: Vec<Contour> =
             contours.iter().map(|contour| contour.iter().map(|&p| to_size * p).collect()).collect();
         let bounds = bounds_of(&contours);
+        let samples = samples(&contours);
         let middle = bounds.center().to_vec2().hypot();
         let names = element
             .sets
@@ -95,7 +98,8 @@ impl Art {
             names,
             parts,
             radius: radius(&contours),
-            samples: samples(&contours),
+            outline: samples.iter().filter(|(_, apart)| *apart == APART).count(),
+            samples,
             central: middle < 0.2 * bounds.size().max_side(),
         })
     }
@@ -119,7 +123,7 @@ impl Art {
         for &(p, apart) in &self.samples {
             cells.claim(id, pose * p, 0.0, apart * size, 0.0);
         }
-        for &(p, apart) in &self.samples {
+        for &(p, apart) in &self.samples[..self.outline] {
             cells.claim_gap(id, pose * p, gap, apart * size, 0.0);
         }
     }
@@ -256,11 +260,13 @@ fn ball() -> Art {
     let path = kurbo::Circle::new((0.0, 0.0), 0.22).to_path(1e-4);
     let parts = vec![(path, Style::filled("#111111"))];
     let contours = silhouette(&parts);
+    let samples = samples(&contours);
     Art {
         id: "ball".into(),
         builtin: true,
         names: vec!["ball".into()],
-        samples: samples(&contours),
+        outline: samples.len(),
+        samples,
         radius: radius(&contours),
         parts,
         central: true,

@@ -56,6 +56,18 @@ pub(super) struct Plant<'a> {
     noise: Vec<(Vec2, f64)>,
 }
 
+/// Angles between a stem and what grows beside it, in the order they are tried.
+const LEAN: [f64; 4] = [0.8, 1.1, 0.55, 1.35];
+
+/// A place beside a stem where clip art may grow.
+#[derive(Clone, Copy, Debug)]
+struct Beside {
+    stem: usize,
+    node: Node,
+    width: f64,
+    side: f64,
+}
+
 /// A place where a branch may leave.
 #[derive(Clone, Copy, Debug)]
 struct Site {
@@ -148,9 +160,8 @@ impl<'a> Plant<'a> {
         for disc in discs(&stem, self.cells.size()) {
             self.cells.claim(id, disc.at, disc.radius, disc.apart, disc.s);
         }
-        // The gap may be a little wider between its samples.
-        for disc in discs(&stem, self.cells.size().max(0.4 * gap)) {
-            self.cells.claim_gap(id, disc.at, disc.radius + gap, 0.5 * disc.apart, disc.s);
+        for disc in discs(&stem, self.cells.size().max(0.6 * gap)) {
+            self.cells.claim_gap(id, disc.at, disc.radius + gap, disc.apart, disc.s);
         }
         self.stems.push(stem);
         index
@@ -386,7 +397,7 @@ impl<'a> Plant<'a> {
                 break;
             }
             let (mut at_parent, mut at_other) = (false, None);
-            let apart = (node.s - before).min(2.0 * size);
+            let apart = node.s - before;
             let free = self.cells.allows(node.p, half, apart, |owner, place| {
                 if let Some(fork) = fork.filter(|fork| !left && owner.id() == Some(fork.id)) {
                     at_parent = true;
@@ -566,7 +577,8 @@ impl<'a> Plant<'a> {
         let mut rng = self.rng.fork();
         let Some(art) = pick(&self.forks[level], &mut rng) else { return };
         let size = self.art_size(level).min(0.4 * self.stems[branch].length());
-        self.place_beside(site.parent, site.s, -site.side, art, (size, 0.5), Some(self.ids[branch]));
+        let beside = self.beside(site.parent, site.s, -site.side);
+        self.place_beside(&beside, art, (size, 0.5), Some(self.ids[branch]));
     }
 
     /// Leaves in the room that is left along the stems, the largest first.
@@ -575,48 +587,64 @@ impl<'a> Plant<'a> {
         if wanted <= 0.0 {
             return true;
         }
-        let mut sites: Vec<(usize, f64, f64)> = Vec::new();
+        const SCALES: [f64; 5] = [1.0, 0.8, 0.64, 0.5, 0.4];
+        let mut sites: Vec<Beside> = Vec::new();
         for (index, stem) in self.stems.iter().enumerate() {
             let step = (0.5 * self.art_size(stem.level)).max(2.0 * self.sizes.gap) / wanted;
             let count = (stem.end / step).ceil().max(1.0);
             for i in 0..count as usize {
                 let s = (i as f64 + 0.6) / count * stem.end;
-                sites.extend([1.0, -1.0].map(|side| (index, s, side)));
+                if s <= stem.end && !self.is_near_crossing(index, s) {
+                    sites.extend([1.0, -1.0].map(|side| self.beside(index, s, side)));
+                }
             }
         }
         // Large ones everywhere before any small one.
-        for (round, scale) in [1.0, 0.8, 0.64, 0.5, 0.4].into_iter().enumerate() {
-            for &(stem, s, side) in &sites {
-                if !go_on(round as f64 / 5.0) {
-                    return false;
-                }
-                let level = self.stems[stem].level;
-                let mut rng = self.rng.fork();
-                let Some(art) = pick(&self.forks[level], &mut rng) else { continue };
-                if s > self.stems[stem].end || self.is_near_crossing(stem, s) {
+        for (round, scale) in SCALES.into_iter().enumerate() {
+            if !go_on(round as f64 / SCALES.len() as f64) {
+                return false;
+            }
+            let mut left = Vec::with_capacity(sites.len());
+            for site in sites {
+                let level = self.stems[site.stem].level;
+                let size = self.art_size(level);
+                // Where not even the smallest has room, no other has.
+                if !self.may_hold(&site, SCALES[SCALES.len() - 1] * size) {
                     continue;
                 }
-                let size = scale * self.art_size(level);
-                self.place_beside(stem, s, side, art, (size, 0.999), None);
+                let art = pick(&self.forks[level], &mut self.rng);
+                if art.is_none_or(|art| !self.place_beside(&site, art, (scale * size, 0.999), None)) {
+                    left.push(site);
+                }
             }
+            sites = left;
         }
         true
+    }
+
+    fn beside(&self, stem: usize, s: f64, side: f64) -> Beside {
+        let parent = &self.stems[stem];
+        Beside { stem, node: parent.at(s), width: parent.width(s), side }
+    }
+
+    /// True if the middle of something of this size beside a stem is free, some way it may lean.
+    fn may_hold(&self, site: &Beside, size: f64) -> bool {
+        LEAN.into_iter().any(|lean| {
+            let along = rotated(site.node.along, site.side * lean);
+            let edge = site.node.p + site.side * 0.5 * site.width * left_of(site.node.along);
+            self.cells.owner(edge + 0.75 * size * along) == Owner::FREE
+        })
     }
 
     /// Places clip art beside a stem, as large as fits down to a share of `size`.
     fn place_beside(
         &mut self,
-        stem: usize,
-        s: f64,
-        side: f64,
+        &Beside { stem, node, width, side }: &Beside,
         art: usize,
         (size, least): (f64, f64),
         branch: Option<u32>,
     ) -> bool {
-        const LEAN: [f64; 4] = [0.8, 1.1, 0.55, 1.35];
-        let parent = &self.stems[stem];
-        let node = parent.at(s);
-        let (width, id) = (parent.width(s), self.ids[stem]);
+        let id = self.ids[stem];
         let near = width + self.sizes.gap + 2.0 * self.cells.size();
         let mut scale = 1.0;
         while scale >= least {
@@ -628,7 +656,7 @@ impl<'a> Plant<'a> {
                 let pose = posed(origin, rotated(node.along, side * lean), size, side < 0.0);
                 let may = |at: Point, owner: Owner, place: f64| {
                     let distance = at.distance(origin);
-                    let own = owner.id() == Some(id) && (place - s).abs() < 0.5 * size + 2.0 * near;
+                    let own = owner.id() == Some(id) && (place - node.s).abs() < 0.5 * size + 2.0 * near;
                     let sibling = branch.is_some() && owner.id() == branch;
                     (own && (distance < base || !owner.is_body()) && distance < 3.0 * near)
                         || (sibling && !owner.is_body() && distance < near)

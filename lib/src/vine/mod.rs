@@ -146,7 +146,7 @@ impl Container<'_> {
         let free = if params.repeat { Shapes::free_repeated } else { Shapes::free };
         let region = free(self.shapes, self.index, sizes.gap, sizes.edge)?;
         // As fine as the thinnest twig.
-        let size = Cells::size_for(width * region.bounds().height(), 0.14 * sizes.width, MOST_CELLS);
+        let size = Cells::size_for(width * region.bounds().height(), 0.17 * sizes.width, MOST_CELLS);
         Some(Cells::new(&region, size, params.repeat.then_some((left, width))))
     }
 

@@ -209,9 +209,10 @@ pub(super) fn wander(plant: &Plant, rough: &Cells, seed: Option<Point>, rng: &mu
     let width = plant.sizes.width;
     let starts: Vec<Point> = (0..country.clear.len())
         .filter(|&i| {
-            country.clear[i] > 1.1 * width && country.clear[i] < 1.1 * width + 2.5 * plant.cells.size()
+            let from_wall = country.clear[i] - plant.sizes.edge - width;
+            from_wall > 0.0 && from_wall < 2.5 * rough.size()
         })
-        .map(|i| plant.cells.middle(i))
+        .map(|i| rough.middle(i))
         .collect();
     let bounds = starts.iter().fold(Rect::from_points(*starts.first()?, starts[0]), |b, &p| b.union_pt(p));
     let mut best: Option<(f64, Vec<Node>)> = None;
@@ -220,7 +221,7 @@ pub(super) fn wander(plant: &Plant, rough: &Cells, seed: Option<Point>, rng: &mu
         let at = seed.or(starts.get(index).copied())?;
         let (score, nodes) = particle(&country, at, reach, 0.75 * width + plant.sizes.edge, rng);
         // Plants grow from the ground, if it makes no great difference.
-        let score = score + 0.12 * (at.y - bounds.y0) / bounds.height().max(f64::MIN_POSITIVE);
+        let score = score + 0.2 * (at.y - bounds.y0) / bounds.height().max(f64::MIN_POSITIVE);
         if nodes.len() > 8 && best.as_ref().is_none_or(|(other, _)| score > *other) {
             best = Some((score, nodes));
         }
