@@ -13,8 +13,11 @@ use std::collections::BTreeMap;
 /// Sublayers of one run, filled plant by plant.
 #[derive(Default)]
 pub(super) struct Layers {
-    pub stems: Group,
+    /// Leaves and buds, under the stems that hide where they are attached.
     pub elements: Group,
+    pub stems: Group,
+    /// What lies over the end of its stem.
+    pub flowers: Group,
     pub fixed: Group,
     pub centre_lines: Group,
     pub symbols: Vec<Symbol>,
@@ -27,8 +30,9 @@ impl Layers {
         fixed.items =
             scene.fixed.iter().map(|fixed| Item::new(fixed.source.id.clone(), fixed.parts.clone())).collect();
         Layers {
-            stems: named("stems", false),
             elements: named("elements", false),
+            stems: named("stems", false),
+            flowers: named("flowers", false),
             fixed,
             centre_lines: named("spines", true),
             symbols: Vec::new(),
@@ -44,11 +48,12 @@ impl Layers {
         let mut symbols: BTreeMap<usize, usize> = BTreeMap::new();
         for placed in &plant.arts {
             let art = &library.arts[placed.art];
+            let group = if art.central { &mut self.flowers } else { &mut self.elements };
             if plant.params.copies {
                 let pose = Affine::IDENTITY;
                 let moved = |part: Part| Part { path: placed.pose * part.path, transform: pose, ..part };
                 let parts = painted(art, placed.size, tones, decimals).into_iter().map(moved).collect();
-                self.elements.items.push(Item::new(art.id.clone(), parts));
+                group.items.push(Item::new(art.id.clone(), parts));
                 continue;
             }
             let symbol = *symbols.entry(placed.art).or_insert_with(|| {
@@ -56,7 +61,7 @@ impl Layers {
                 self.symbols.push(Symbol { name, parts: painted(art, 1.0, tones, SYMBOL_DECIMALS) });
                 self.symbols.len() - 1
             });
-            self.elements.items.push(Item::cloned(art.id.clone(), symbol, placed.pose));
+            group.items.push(Item::cloned(art.id.clone(), symbol, placed.pose));
         }
     }
 
@@ -112,7 +117,7 @@ impl Layers {
 
     /// The sublayers that hold something, in drawing order, and what their clones repeat.
     pub fn into_parts(self) -> (Vec<Group>, Vec<Symbol>) {
-        let mut groups = vec![self.stems, self.elements, self.fixed, self.centre_lines];
+        let mut groups = vec![self.elements, self.stems, self.flowers, self.fixed, self.centre_lines];
         groups.retain(|group| !group.items.is_empty());
         (groups, self.symbols)
     }

@@ -194,6 +194,16 @@ impl Cells {
         self.grid.size
     }
 
+    /// These cells, outside where another grid over the same place is claimed.
+    pub fn less(&self, other: &Cells) -> Cells {
+        let owners = self.owners.iter().enumerate().map(|(i, &owner)| {
+            if other.owner(self.middle(i)) == Owner::FREE { owner } else { Owner::OUTSIDE }
+        });
+        let Grid { origin, size, columns, rows, wrap } = self.grid;
+        let grid = Grid { origin, size, columns, rows, wrap };
+        Cells { grid, owners: owners.collect(), places: self.places.clone() }
+    }
+
     /// Who claims a place.
     pub fn owner(&self, at: Point) -> Owner {
         self.cell(at).map_or(Owner::OUTSIDE, |i| self.owners[i])

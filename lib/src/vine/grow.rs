@@ -50,6 +50,8 @@ pub(super) struct Plant<'a> {
     ids: Vec<u32>,
     /// Where branches cross.
     pub crossings: Vec<Crossing>,
+    /// How many stems have had their branches.
+    grown: usize,
     forks: Vec<Vec<Vec<usize>>>,
     tips: Vec<Vec<Vec<usize>>>,
     rng: Rng,
@@ -140,6 +142,7 @@ impl<'a> Plant<'a> {
             things: 0,
             ids: Vec::new(),
             crossings: Vec::new(),
+            grown: 0,
             forks,
             tips,
             rng,
@@ -167,14 +170,29 @@ impl<'a> Plant<'a> {
         index
     }
 
+    /// Adds a main stem, and what grows at its tip.
+    pub fn add_main(&mut self, stem: Stem) {
+        let index = self.add(stem);
+        self.place_tip(index);
+    }
+
     /// Lets all levels grow from the stems there are, `go_on` willing. False if it was not.
-    pub fn branch(&mut self, most: usize, mut go_on: impl FnMut(f64) -> bool) -> bool {
-        if self.params.places == "equal" {
-            return self.branch_in_order(most, go_on);
-        }
+    pub fn branch(&mut self, most: usize, go_on: impl FnMut(f64) -> bool) -> bool {
+        let finished = if self.params.places == "equal" {
+            self.branch_in_order(most, go_on)
+        } else {
+            self.branch_by_length(most, go_on)
+        };
+        self.grown = self.stems.len();
+        finished
+    }
+
+    /// The longest first, wherever there is room.
+    fn branch_by_length(&mut self, most: usize, mut go_on: impl FnMut(f64) -> bool) -> bool {
         let mut heap = BinaryHeap::new();
         let mut order = 0;
-        for parent in 0..self.stems.len() {
+        // Stems from before have had their turn.
+        for parent in self.grown..self.stems.len() {
             self.offer(parent, &mut heap, &mut order);
         }
         let mut forks: Vec<Vec<(f64, f64)>> = vec![Vec::new(); self.stems.len()];
@@ -250,7 +268,7 @@ impl<'a> Plant<'a> {
 
     /// The article's places: N per stem at equal intervals, sides in turn, level by level.
     fn branch_in_order(&mut self, most: usize, mut go_on: impl FnMut(f64) -> bool) -> bool {
-        let mut parent = 0;
+        let mut parent = self.grown;
         while parent < self.stems.len() {
             if !go_on(parent as f64 / self.stems.len() as f64) {
                 return false;
@@ -278,7 +296,7 @@ impl<'a> Plant<'a> {
 
     /// Nothing shorter grows: a twig as thin as the gap is as thin as anything should be.
     fn shortest(&self) -> f64 {
-        4.6 * self.sizes.width
+        5.2 * self.sizes.width
     }
 
     /// The longest branch at a site that touches nothing, `longest` at most and `shortest` at
@@ -293,13 +311,26 @@ impl<'a> Plant<'a> {
             let taper = self.taper(width.min(length / SLENDER));
             if let Some((nodes, met)) = self.curve(site, level, &start, length, &taper) {
                 let stem = Stem::new(level, Some((site.parent, site.s)), site.side, nodes, taper);
-                if let Some(crossings) = self.crossings(&stem, &met) {
+                if let Some(crossings) =
+                    self.crossings(&stem, &met).filter(|_| self.parts_from_parent(&stem, length))
+                {
                     return Some((length, stem, crossings));
                 }
             }
             length *= SHORTER;
         }
         None
+    }
+
+    /// True unless a branch runs beside its parent like a second pipe.
+    fn parts_from_parent(&self, branch: &Stem, length: f64) -> bool {
+        const SHARE: f64 = 0.36;
+        const APART: f64 = 0.1;
+        let Some((parent, s)) = branch.parent else { return true };
+        let at = branch.at(SHARE * length).p;
+        let near = |node: &&Node| (node.s - s).abs() < length;
+        let mut parent = self.stems[parent].nodes.iter().filter(near);
+        !parent.any(|node| node.p.distance(at) < APART * length)
     }
 
     /// How a stem of this width gets thinner.
@@ -516,13 +547,15 @@ impl<'a> Plant<'a> {
     }
 
     /// What sits at the end of a curl: as large as there is room inside it.
-    pub fn place_tip(&mut self, stem: usize) {
+    fn place_tip(&mut self, stem: usize) {
         let level = self.stems[stem].level;
         let mut rng = self.rng.fork();
         let Some(art) = pick(&self.tips[level], &mut rng) else { return };
         let full = self.stems[stem].end;
         let id = self.ids[stem];
-        let largest = self.art_size(level).min(0.3 * full);
+        // A flower much smaller than its fellows is dust; a bare curl is better.
+        let smallest = 0.48 * self.art_size(level);
+        let largest = self.art_size(level).min(0.34 * full);
         let central = self.library.arts[art].central;
         let twist = rng.between(-0.4, 0.4);
         // What others cross must stay.
@@ -530,9 +563,14 @@ impl<'a> Plant<'a> {
         let crossed =
             crossings.filter(|at| at.0 == stem).map(|at| at.1).fold(0.0, f64::max) + 2.0 * self.sizes.width;
         let mut size = largest;
-        while size > 0.3 * largest {
+        while size > smallest {
             // Where a bud does not fit, its stem may be shorter (M-036).
-            let ends: &[f64] = if central { &[1.0, 0.96] } else { &[1.0, 0.95, 0.88, 0.8, 0.72] };
+            let ends: &[f64] = match (level, central) {
+                // A main stem ends where it was drawn to end.
+                (0, _) => &[1.0],
+                (_, true) => &[1.0, 0.96],
+                (_, false) => &[1.0, 0.95, 0.88, 0.8, 0.72],
+            };
             for share in ends {
                 let end = share * full;
                 if end < crossed {
@@ -599,6 +637,7 @@ impl<'a> Plant<'a> {
                 }
             }
         }
+        let mut last = vec![None; self.stems.len()];
         // Large ones everywhere before any small one.
         for (round, scale) in SCALES.into_iter().enumerate() {
             if !go_on(round as f64 / SCALES.len() as f64) {
@@ -612,14 +651,24 @@ impl<'a> Plant<'a> {
                 if !self.may_hold(&site, SCALES[SCALES.len() - 1] * size) {
                     continue;
                 }
-                let art = pick(&self.forks[level], &mut self.rng);
-                if art.is_none_or(|art| !self.place_beside(&site, art, (scale * size, 0.999), None)) {
+                let art = self.pick_other(level, last[site.stem]);
+                if art.is_some_and(|art| self.place_beside(&site, art, (scale * size, 0.999), None)) {
+                    last[site.stem] = art;
+                } else {
                     left.push(site);
                 }
             }
             sites = left;
         }
         true
+    }
+
+    /// Clip art for a fork, not the same twice in a row if there is another.
+    fn pick_other(&mut self, level: usize, last: Option<usize>) -> Option<usize> {
+        const TRIES: usize = 3;
+        let picks = (0..TRIES).map(|_| pick(&self.forks[level], &mut self.rng));
+        let picks: Vec<Option<usize>> = picks.collect();
+        picks.iter().copied().find(|&art| art != last).unwrap_or(picks[0])
     }
 
     fn beside(&self, stem: usize, s: f64, side: f64) -> Beside {

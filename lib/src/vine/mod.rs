@@ -44,6 +44,8 @@ use stem::Stem;
 
 /// Stems of one container at most.
 pub const MOST_STEMS: usize = 60_000;
+/// Main stems of one container that start by themselves, at most.
+const MOST_STARTS: usize = 12;
 /// Cells of one container at most; with more the same ornament takes longer and no other shape.
 const MOST_CELLS: f64 = 6e6;
 
@@ -64,8 +66,10 @@ pub fn generate(
     let mut warnings = scene.warnings.clone();
     let mut counts = BTreeMap::new();
     let mut complete = true;
+    let mut used = vec![0.0; scene.stems.len()];
     for index in 0..scene.containers.len() {
-        let mut one = Container { scene, shapes: &shapes, index, library: &library };
+        let mut one =
+            Container { scene, shapes: &shapes, index, library: &library, used: &mut used, drawn: false };
         match one.grow(params, &mut rng.fork(), &mut layers, &mut counts, progress)? {
             Some(finished) => complete &= finished,
             None => warnings.push(format!(
@@ -74,6 +78,7 @@ pub fn generate(
             )),
         }
     }
+    warnings.extend(stems_cut(scene, &used)?);
     progress.step("artwork", 0.0);
     if layers.stems.items.is_empty() {
         let remedy = "Make the stem width or the gap smaller";
@@ -83,12 +88,42 @@ pub fn generate(
     Ok(Artwork { symbols, groups, complete, warnings, counts, decimals: shapes.decimals() })
 }
 
+/// A warning for every drawn stem that is used in part.
+///
+/// Errors: one lies outside every container.
+fn stems_cut(scene: &Scene, used: &[f64]) -> Result<Vec<String>, Error> {
+    // The ends of a stem may touch the edge that is kept free.
+    const MOST: f64 = 0.9;
+    let mut warnings = Vec::new();
+    for (stem, &used) in scene.stems.iter().zip(used) {
+        let name = &stem.source.id;
+        if used == 0.0 {
+            return Err(stem.source.error(
+                "stem-outside",
+                format!("The stem '{name}' is outside every container, or runs along its edge"),
+                "Move it into the shape that it should fill, or clear its mark",
+            ));
+        }
+        if used < MOST {
+            warnings.push(format!(
+                "{}: the stem '{name}' leaves its container or crosses what is fixed; only its longest part inside is used",
+                stem.source.at
+            ));
+        }
+    }
+    Ok(warnings)
+}
+
 /// One container of a run.
 struct Container<'a> {
     scene: &'a Scene,
     shapes: &'a Shapes,
     index: usize,
     library: &'a Library,
+    /// How much of each drawn stem any container uses.
+    used: &'a mut [f64],
+    /// True if its stems were drawn: then no others start.
+    drawn: bool,
 }
 
 impl Container<'_> {
@@ -116,13 +151,22 @@ impl Container<'_> {
             Plant::new((&params, &sizes), (self.library, &charge), (forks, tips), cells, rng.fork());
         progress.step("stem", 0.0);
         self.start(&mut plant, &rough, rng);
-        progress.step("branches", 0.0);
-        let mut finished = plant.branch(MOST_STEMS, |done| progress.step("branches", done));
-        (0..plant.stems.len())
-            .filter(|&i| plant.stems[i].level == 0)
-            .collect::<Vec<_>>()
-            .into_iter()
-            .for_each(|i| plant.place_tip(i));
+        let mut finished = true;
+        // Where a large place stays empty another stem starts, smaller as the place is.
+        for _ in 0..MOST_STARTS {
+            progress.step("branches", 0.0);
+            finished &= plant.branch(MOST_STEMS, |done| progress.step("branches", done));
+            if !finished || self.drawn || params.repeat {
+                break;
+            }
+            progress.step("stem", 0.0);
+            let left = rough.less(&plant.cells).inradius();
+            if left < 0.42 * inradius || left < 3.5 * sizes.width {
+                break;
+            }
+            let Some(stem) = start::wander(&plant, &rough, None, rng) else { break };
+            plant.add_main(stem);
+        }
         finished &= plant.place_leaves(|done| progress.step("leaves", done));
         plait::cut(&mut plant.stems, &plant.crossings, 0.8 * sizes.gap);
         layers.add(&plant, self.library, container.fill.as_deref(), self.shapes.decimals());
@@ -150,39 +194,54 @@ impl Container<'_> {
         Some(Cells::new(&region, size, params.repeat.then_some((left, width))))
     }
 
-    /// Plants the main stems.
-    fn start(&self, plant: &mut Plant, rough: &Cells, rng: &mut Rng) {
+    /// Plants the main stems: those that were drawn, or from the seeds, or one that starts by
+    /// itself.
+    fn start(&mut self, plant: &mut Plant, rough: &Cells, rng: &mut Rng) {
+        let repeat = plant.params.repeat;
         let inradius = rough.inradius();
-        let drawn =
-            self.scene.stems.iter().flat_map(|stem| start::drawn(&stem.path, plant.taper(plant.sizes.width)));
-        let mut drawn: Vec<Stem> = drawn.filter(|stem| start::is_inside(&plant.cells, stem)).collect();
+        let taper = plant.taper(plant.sizes.width);
+        let mut drawn: Vec<Stem> = Vec::new();
+        for (stem, used) in self.scene.stems.iter().zip(&mut *self.used) {
+            for whole in start::drawn(&stem.path, taper) {
+                let part = start::part_inside(&plant.cells, &whole);
+                *used = used.max(part.as_ref().map_or(0.0, |part| part.length() / whole.length()));
+                drawn.extend(part);
+            }
+        }
         let seeds =
             self.scene.seeds.iter().map(|seed| seed.at).filter(|&at| plant.cells.owner(at) == Owner::FREE);
         let mut seeds: Vec<Option<Point>> = seeds.map(Some).collect();
+        self.drawn = !drawn.is_empty();
         if drawn.is_empty() && seeds.is_empty() {
-            if plant.params.repeat {
+            if repeat {
                 drawn.extend(start::wave(plant, self.shapes.span(self.index), inradius));
             }
             if drawn.is_empty() {
                 seeds.push(None);
             }
         }
-        if plant.params.repeat {
-            // Where the copies join, the end of one is the start of the next.
-            drawn.iter_mut().for_each(|stem| stem.taper.tip = stem.taper.start);
-        }
-        for stem in drawn.drain(..) {
-            plant.add(stem);
+        for mut stem in drawn {
+            if repeat {
+                // Where the copies join, the end of one is the start of the next.
+                stem.taper.tip = stem.taper.start;
+                plant.add(stem);
+            } else {
+                // One that leaves another is as wide as that one is there.
+                if let Some(width) = start::width_of_parent(&plant.stems, &stem) {
+                    stem.taper = plant.taper(width);
+                }
+                plant.add_main(stem);
+            }
         }
         for seed in seeds {
+            let longest = plant.sizes.length[0];
             let stem = if plant.params.stem == "curl" {
-                start::curl(plant, seed, plant.sizes.length[0])
+                start::curl(plant, seed, longest)
             } else {
-                start::wander(plant, rough, seed, rng)
-                    .or_else(|| start::curl(plant, seed, plant.sizes.length[0]))
+                start::wander(plant, rough, seed, rng).or_else(|| start::curl(plant, seed, longest))
             };
             if let Some(stem) = stem {
-                plant.add(stem);
+                plant.add_main(stem);
             }
         }
     }

@@ -111,13 +111,26 @@ impl Form {
     /// The curve of a level.
     pub fn new(charge: &Charge, alpha: f64, turns: f64, euler: bool) -> Self {
         let law = Law::new(charge, alpha, turns * TAU);
-        Form { nodes: if euler { law.euler() } else { law.exact() } }
+        let mut nodes = if euler { law.euler() } else { law.exact() };
+        nodes.truncate(before_itself(&nodes));
+        Form { nodes }
     }
 
     /// Arc length in all.
     pub fn length(&self) -> f64 {
         self.nodes.last().map_or(0.0, |node| node.s)
     }
+}
+
+/// How many nodes there are before a curve comes back to itself.
+fn before_itself(nodes: &[Node]) -> usize {
+    /// About as near as the narrowest gap of two windings, in lengths of the curve.
+    const NEAR: f64 = 0.025;
+    /// Farther back than this counts as another winding.
+    const BACK: f64 = 0.1;
+    let back = |i: usize| nodes[..i].iter().take_while(move |node| node.s < nodes[i].s - BACK);
+    let meets = |&i: &usize| back(i).any(|node| node.p.distance_squared(nodes[i].p) < NEAR * NEAR);
+    (1..nodes.len()).find(meets).unwrap_or(nodes.len()).max(2)
 }
 
 /// The heading of a curve of length 1.
@@ -312,6 +325,13 @@ mod tests {
             assert!(last.p.distance(p) < 2e-6, "{alpha}: {:?} {p:?}", last.p);
             assert!((last.along - unit(turns * TAU)).hypot() < 1e-9);
         }
+    }
+
+    #[test]
+    fn a_circle_ends_before_it_meets_its_start() {
+        let form = Form::new(&Charge::Constant, 0.0, 1.75, false);
+        let turned = form.length() * 1.75;
+        assert!((0.8..1.0).contains(&turned), "{turned}");
     }
 
     #[test]

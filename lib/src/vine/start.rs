@@ -132,7 +132,7 @@ pub(super) fn wave(plant: &Plant, (left, width): (f64, f64), inradius: f64) -> O
     path.move_to(point(0));
     (1..=n).for_each(|i| path.line_to(point(i)));
     let stem = drawn(&path, plant.taper(plant.sizes.width)).pop()?;
-    is_inside(&plant.cells, &stem).then_some(stem)
+    part_inside(&plant.cells, &stem).filter(|part| part.length() > 0.99 * stem.length())
 }
 
 /// What a shape offers a wandering particle: its free area in squares.
@@ -201,16 +201,20 @@ impl<'a> Country<'a> {
     }
 }
 
-/// A stem that finds its way. `seed` is where it starts, if the artist says.
+/// A stem that finds its way through what is free. `seed` is where it starts, if the artist
+/// says.
 pub(super) fn wander(plant: &Plant, rough: &Cells, seed: Option<Point>, rng: &mut Rng) -> Option<Stem> {
-    let inradius = rough.inradius();
+    let free = rough.less(&plant.cells);
+    let inradius = free.inradius();
     let reach = 0.95 * inradius;
-    let country = Country::new(rough, reach);
+    let country = Country::new(&free, reach);
     let width = plant.sizes.width;
+    // It grows from the wall, not from the middle of the air or from another plant.
+    let walls = Country::new(rough, reach);
     let starts: Vec<Point> = (0..country.clear.len())
         .filter(|&i| {
-            let from_wall = country.clear[i] - plant.sizes.edge - width;
-            from_wall > 0.0 && from_wall < 2.5 * rough.size()
+            let from_wall = walls.clear[i] - plant.sizes.edge - width;
+            from_wall > 0.0 && from_wall < 2.5 * rough.size() && country.clear[i] > width
         })
         .map(|i| rough.middle(i))
         .collect();
@@ -325,7 +329,30 @@ fn curled(plant: &Plant, stem: Stem, longest: f64) -> Stem {
     Stem::new(0, None, side, nodes, stem.taper)
 }
 
-/// True if a stem lies in the free cells all along.
-pub(super) fn is_inside(cells: &Cells, stem: &Stem) -> bool {
-    stem.nodes.iter().all(|node| cells.allows(node.p, 0.0, 0.0, |owner, _| owner != Owner::OUTSIDE))
+/// Width of the stem that another starts on.
+pub(super) fn width_of_parent(stems: &[Stem], stem: &Stem) -> Option<f64> {
+    let start = stem.nodes.first()?.p;
+    stems.iter().find_map(|other| {
+        let distance = |node: &Node| node.p.distance(start);
+        let nearest = other.nodes.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        let width = other.width(nearest.s);
+        // Where both start together neither leaves the other.
+        (distance(nearest) < 0.6 * width && nearest.s > width).then_some(width)
+    })
+}
+
+/// The longest part of a stem that lies in free cells. `None` if nothing of it does.
+pub(super) fn part_inside(cells: &Cells, stem: &Stem) -> Option<Stem> {
+    let is_inside =
+        |node: &Node| cells.allows(node.p, stem.width(node.s) / 2.0, 0.0, |owner, _| owner != Owner::OUTSIDE);
+    let mut best: Option<(f64, f64)> = None;
+    for run in stem.nodes.chunk_by(|a, b| is_inside(a) == is_inside(b)) {
+        let (from, to) = (run[0].s, run[run.len() - 1].s);
+        if is_inside(&run[0]) && best.is_none_or(|(a, b)| to - from > b - a) {
+            best = Some((from, to));
+        }
+    }
+    let (from, to) = best.filter(|(from, to)| to - from > 2.0 * stem.taper.start)?;
+    let nodes = stem.between(from, to).into_iter().map(|node| Node { s: node.s - from, ..node });
+    Some(Stem::new(0, None, 1.0, nodes.collect(), stem.taper))
 }

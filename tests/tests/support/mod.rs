@@ -4,6 +4,8 @@
 // Each test file compiles this module for itself and uses a part of it.
 #![allow(dead_code)]
 
+pub mod geometry;
+
 use std::io::{Read, Write};
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
@@ -29,13 +31,7 @@ pub fn root() -> &'static Path {
 
 /// The drawings of `samples/pack`, in order of name.
 pub fn samples() -> Vec<PathBuf> {
-    let folder = root().join("samples/pack");
-    let entries = folder.read_dir().unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
-    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "svg"));
-    paths.sort();
-    assert!(!paths.is_empty(), "no sample in {}", folder.display());
-    paths
+    geometry::samples_of("pack")
 }
 
 /// The binary, built once in the profile and target folder of the tests.
