@@ -89,6 +89,9 @@ pub struct Container {
 pub struct Guide {
     /// The object.
     pub source: Source,
+    /// False for a path without a role that was only selected: what it is for is then up to
+    /// the generator.
+    pub marked: bool,
     /// In user units of the root; may have several subpaths.
     pub path: BezPath,
 }

@@ -15,6 +15,7 @@ pub mod pack;
 pub mod palette;
 pub mod params;
 pub mod progress;
+pub mod quality;
 pub mod rng;
 pub mod shapes;
 pub mod vine;

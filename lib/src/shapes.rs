@@ -28,10 +28,11 @@ pub struct Shapes {
 }
 
 impl Shapes {
-    /// Reads the containers.
+    /// Reads the containers. One that is an `overlay` lies over those below it and does not
+    /// take their place.
     ///
     /// Errors: there is none; one is open, crosses itself or has no area.
-    pub fn new(scene: &Scene) -> Result<Self, Error> {
+    pub fn new(scene: &Scene, overlay: &[bool]) -> Result<Self, Error> {
         if scene.containers.is_empty() {
             return Err(Error::new(
                 "no-container",
@@ -49,7 +50,8 @@ impl Shapes {
         // Of overlapping containers the upper one has the common area.
         for i in 0..containers.len() {
             for j in i + 1..containers.len() {
-                if may_touch(&containers[i], &containers[j]) {
+                let takes = !overlay.get(j).copied().unwrap_or(false);
+                if takes && may_touch(&containers[i], &containers[j]) {
                     containers[i] = boolean::difference(&containers[i], &containers[j]);
                 }
             }

@@ -3,7 +3,7 @@
 use crate::{check, install, output, progress};
 use clap::ArgMatches;
 use rinceau::{Error, GENERATORS, Generator, Values};
-use rinceau_format::{Artwork, Document, Recipe, Role, Selection};
+use rinceau_format::{Artwork, Document, Recipe, Role, Scene, Selection};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -22,6 +22,7 @@ pub struct Job<'a> {
 /// What a run gave.
 pub struct Done {
     pub document: Document,
+    pub scene: Scene,
     pub artwork: Artwork,
 }
 
@@ -43,7 +44,7 @@ pub fn generate(job: Job) -> Result<Done, Error> {
         sources: scene.containers.iter().map(|container| container.source.id.clone()).collect(),
         label: format!("Ornament - {}", labels.join(", ")),
     };
-    Ok(Done { document: document.with_layer(&artwork, &recipe)?, artwork })
+    Ok(Done { document: document.with_layer(&artwork, &recipe)?, scene, artwork })
 }
 
 /// Runs a parsed command line.
@@ -98,15 +99,18 @@ fn generator_command(generator: &'static Generator, matches: &ArgMatches) -> Res
     if let Some(report) = matches.get_one::<PathBuf>("report") {
         let stages: serde_json::Map<_, _> =
             progress.stages().iter().map(|(name, ms)| ((*name).to_owned(), json!(ms))).collect();
+        // The clock stops before the measuring, which is no part of the work.
+        let total = start.elapsed().as_secs_f64() * 1e3;
         let report_json = json!({
             "generator": generator.name,
             "params": recipe,
             "seed": seed,
             "counts": done.artwork.counts,
+            "quality": rinceau::quality::measure(&done.scene, &done.artwork)?,
             "complete": done.artwork.complete,
             "warnings": done.artwork.warnings,
             "milliseconds": stages,
-            "milliseconds_total": start.elapsed().as_secs_f64() * 1e3,
+            "milliseconds_total": total,
         });
         output::write(Some(report), format!("{report_json:#}\n").as_bytes())?;
     }

@@ -141,7 +141,7 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
                     .iter()
                     .filter_map(|part| Some(part.style.stroke_width()? * mean_scale(part.transform)));
                 let width = widths.fold(0.0, f64::max);
-                let Guide { source, path } = done.guide();
+                let Guide { source, path, .. } = done.guide();
                 self.scene.sprays.push(Stroke { source, path, width });
             }
             Some(Role::Fixed) => self.scene.fixed.push(Fixed { source: done.source, parts: done.parts }),
@@ -152,13 +152,13 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
             Some(Role::Form | Role::Clone | Role::Tack | Role::Reference | Role::Rules) => {}
             None if done.parts.iter().any(|part| is_closed(&part.path)) => self.container(done),
             None if done.parts.is_empty() => {}
-            None => self.scene.guides.push(done.guide()),
+            None => self.scene.guides.push(Guide { marked: false, ..done.guide() }),
         }
         Ok(())
     }
 
     /// The middle of what is drawn; a path that only moves is a point.
-    fn seed(&mut self, Guide { source, path }: Guide) {
+    fn seed(&mut self, Guide { source, path, .. }: Guide) {
         let mut points = path.elements().iter().flat_map(points_of);
         let Some(first) = points.next() else {
             self.warn(format!("{}: the seed '{}' has nothing drawn in it", source.at, source.id));
@@ -188,7 +188,7 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
         self.selected_containers.push(done.selected);
     }
 
-    fn spine(&mut self, Guide { source, path }: &Guide) -> Result<(), Error> {
+    fn spine(&mut self, Guide { source, path, .. }: &Guide) -> Result<(), Error> {
         // A hand-drawn spine may bow this much of its length and still counts as straight.
         const STRAIGHT: f64 = 0.02;
         let remedy = "Draw it as one straight line from the base to the tip of the element";
@@ -263,7 +263,7 @@ impl Collector {
         let mut outlines = self.parts.into_iter().map(|part| root_outline(part).path);
         let mut path = outlines.next().unwrap_or_default();
         path.extend(outlines.flatten());
-        Guide { source: self.source, path }
+        Guide { source: self.source, marked: true, path }
     }
 }
 

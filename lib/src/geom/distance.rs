@@ -71,30 +71,40 @@ impl Hull {
 
 /// Which cells of a grid have their middle inside simple contours (even-odd), by scan lines.
 pub fn covered(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize, rows: usize) -> Vec<bool> {
-    let mut crossings: Vec<Vec<f64>> = vec![Vec::new(); rows];
+    let mut covered = vec![false; columns * rows];
+    cover(contours, origin, cell, columns, &mut covered);
+    covered
+}
+
+/// Marks the cells inside simple contours in a grid with this many columns.
+pub fn cover(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize, covered: &mut [bool]) {
+    let rows = covered.len() / columns.max(1);
+    // Rows whose middle lies in [low, high): each edge end counts once.
+    let row = |y: f64| (((y - origin.y) / cell - 0.5).ceil().max(0.0) as usize).min(rows);
+    let ys = || contours.iter().flatten().map(|p| p.y);
+    let (first, last) =
+        (row(ys().fold(f64::INFINITY, f64::min)), row(ys().fold(f64::NEG_INFINITY, f64::max)));
+    let mut crossings: Vec<Vec<f64>> = vec![Vec::new(); last.saturating_sub(first)];
     for contour in contours {
-        let Some(&last) = contour.last() else { continue };
-        let mut previous = last;
+        let Some(&end) = contour.last() else { continue };
+        let mut previous = end;
         for &p in contour {
             let (low, high) = if previous.y <= p.y { (previous, p) } else { (p, previous) };
-            // Rows whose middle lies in [low, high): each edge end counts once.
-            let row = |y: f64| ((y - origin.y) / cell - 0.5).ceil().max(0.0) as usize;
-            for (r, crossings) in crossings.iter_mut().enumerate().take(row(high.y)).skip(row(low.y)) {
+            for r in row(low.y)..row(high.y) {
                 let y = origin.y + (r as f64 + 0.5) * cell;
-                crossings.push(low.x + (y - low.y) / (high.y - low.y) * (high.x - low.x));
+                crossings[r - first].push(low.x + (y - low.y) / (high.y - low.y) * (high.x - low.x));
             }
             previous = p;
         }
     }
-    let mut covered = vec![false; columns * rows];
     for (r, crossings) in crossings.iter_mut().enumerate() {
         crossings.sort_by(f64::total_cmp);
+        let start = (r + first) * columns;
         for pair in crossings.chunks_exact(2) {
             let column = |x: f64| (((x - origin.x) / cell - 0.5).ceil().max(0.0) as usize).min(columns);
-            covered[r * columns + column(pair[0])..r * columns + column(pair[1])].fill(true);
+            covered[start + column(pair[0])..start + column(pair[1])].fill(true);
         }
     }
-    covered
 }
 
 #[cfg(test)]

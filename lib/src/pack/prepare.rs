@@ -40,7 +40,7 @@ pub(super) struct Prepared {
 /// Errors: no container; one that is open, crosses itself or has no area; a guide outside all
 /// containers; a container's own parameter that does not exist.
 pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error> {
-    let shapes = Shapes::new(scene)?;
+    let shapes = Shapes::new(scene, &[])?;
     let tolerance = shapes.tolerance;
     let guides = polylines(&scene.guides, tolerance);
     let spines = polylines(&scene.fixed_spines, tolerance);

@@ -38,7 +38,7 @@ use grow::Plant;
 use kurbo::Point;
 use params::Sizes;
 use particle::Charge;
-use rinceau_format::{Artwork, Error, Scene};
+use rinceau_format::{Artwork, Error, Guide, Scene};
 use std::collections::BTreeMap;
 use stem::Stem;
 
@@ -60,16 +60,28 @@ pub fn generate(
     progress: &mut dyn Progress,
 ) -> Result<Artwork, Error> {
     progress.step("prepare", 0.0);
-    let shapes = Shapes::new(scene)?;
+    let overlay =
+        scene.containers.iter().map(|container| own_params(params, container).map(|own| own.overlay));
+    let shapes = Shapes::new(scene, &overlay.collect::<Result<Vec<_>, _>>()?)?;
     let library = Library::new(scene)?;
     let mut layers = Layers::new(scene);
     let mut warnings = scene.warnings.clone();
     let mut counts = BTreeMap::new();
     let mut complete = true;
-    let mut used = vec![0.0; scene.stems.len()];
+    // A path that is selected together with a shape is its stem.
+    let stems: Vec<&Guide> =
+        scene.stems.iter().chain(scene.guides.iter().filter(|path| !path.marked)).collect();
+    let mut used = vec![0.0; stems.len()];
     for index in 0..scene.containers.len() {
-        let mut one =
-            Container { scene, shapes: &shapes, index, library: &library, used: &mut used, drawn: false };
+        let mut one = Container {
+            scene,
+            shapes: &shapes,
+            index,
+            library: &library,
+            stems: &stems,
+            used: &mut used,
+            drawn: false,
+        };
         match one.grow(params, &mut rng.fork(), &mut layers, &mut counts, progress)? {
             Some(finished) => complete &= finished,
             None => warnings.push(format!(
@@ -78,7 +90,7 @@ pub fn generate(
             )),
         }
     }
-    warnings.extend(stems_cut(scene, &used)?);
+    warnings.extend(stems_cut(&stems, &used)?);
     progress.step("artwork", 0.0);
     if layers.stems.items.is_empty() {
         let remedy = "Make the stem width or the gap smaller";
@@ -88,14 +100,20 @@ pub fn generate(
     Ok(Artwork { symbols, groups, complete, warnings, counts, decimals: shapes.decimals() })
 }
 
+/// The parameters of a container, its own wishes included.
+fn own_params(params: &Params, container: &rinceau_format::Container) -> Result<Params, Error> {
+    let overrides = container.overrides.iter().map(|(name, value)| (name.as_str(), value.as_str()));
+    params.overridden(overrides).map_err(|error| error.at(container.source.at))
+}
+
 /// A warning for every drawn stem that is used in part.
 ///
 /// Errors: one lies outside every container.
-fn stems_cut(scene: &Scene, used: &[f64]) -> Result<Vec<String>, Error> {
+fn stems_cut(stems: &[&Guide], used: &[f64]) -> Result<Vec<String>, Error> {
     // The ends of a stem may touch the edge that is kept free.
     const MOST: f64 = 0.9;
     let mut warnings = Vec::new();
-    for (stem, &used) in scene.stems.iter().zip(used) {
+    for (stem, &used) in stems.iter().zip(used) {
         let name = &stem.source.id;
         if used == 0.0 {
             return Err(stem.source.error(
@@ -120,6 +138,8 @@ struct Container<'a> {
     shapes: &'a Shapes,
     index: usize,
     library: &'a Library,
+    /// Drawn stems.
+    stems: &'a [&'a Guide],
     /// How much of each drawn stem any container uses.
     used: &'a mut [f64],
     /// True if its stems were drawn: then no others start.
@@ -137,8 +157,7 @@ impl Container<'_> {
         progress: &mut dyn Progress,
     ) -> Result<Option<bool>, Error> {
         let container = &self.scene.containers[self.index];
-        let overrides = container.overrides.iter().map(|(name, value)| (name.as_str(), value.as_str()));
-        let params = params.overridden(overrides).map_err(|error| error.at(container.source.at))?;
+        let params = own_params(params, container)?;
         let charge = Charge::from_param(&params.charge)?;
         let forks = self.library.choices(&params.forks, params.levels)?;
         let tips = self.library.choices(&params.tips, params.levels)?;
@@ -201,7 +220,7 @@ impl Container<'_> {
         let inradius = rough.inradius();
         let taper = plant.taper(plant.sizes.width);
         let mut drawn: Vec<Stem> = Vec::new();
-        for (stem, used) in self.scene.stems.iter().zip(&mut *self.used) {
+        for (stem, used) in self.stems.iter().zip(&mut *self.used) {
             for whole in start::drawn(&stem.path, taper) {
                 let part = start::part_inside(&plant.cells, &whole);
                 *used = used.max(part.as_ref().map_or(0.0, |part| part.length() / whole.length()));

@@ -56,6 +56,8 @@ crate::params! {
         stems: String = "stems", "Stems", More, Kind::Choice(&[("shapes", "Tapered shapes"), ("united", "One shape"), ("lines", "Lines")]), "shapes";
         #[doc = "Whether leaves and flowers are copies; otherwise they are clones: edit one in the layer's symbols and all follow. Cutters and plotters want copies"]
         copies: bool = "copies", "Copies instead of clones", More, Kind::Switch, "false";
+        #[doc = "Whether the vine lies over those of shapes below; otherwise the upper shape takes the place of the lower one"]
+        overlay: bool = "overlay", "Lies over others", More, Kind::Switch, "false";
         #[doc = "Whether branches may cross others at steep angles, weaving over and under"]
         plait: bool = "plait", "Plait-work", More, Kind::Switch, "false";
         #[doc = "Whether the ornament repeats: the left and right end of the shape are then joined, so that copies set side by side make a band without a seam"]

@@ -339,8 +339,9 @@ mod tests {
         // alpha = 1/2, B = 1 in pixels, T = 300: the speed grows by exactly sqrt(T + 1).
         let t = 300.0f64;
         let turning = 2.0 * t.sqrt() * (1.0 - END.sqrt());
-        let form = Form::new(&Charge::Power, 0.5, turning / TAU, true);
-        assert!((form.length() * t - 560.0).abs() < 8.0, "{}", form.length() * t);
+        let nodes = Law::new(&Charge::Power, 0.5, turning).euler();
+        let length = nodes.last().unwrap().s * t;
+        assert!((length - 560.0).abs() < 8.0, "{length}");
     }
 
     #[test]

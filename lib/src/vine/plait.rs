@@ -136,10 +136,11 @@ mod tests {
         // Two crossings next to each other on both stems, met in opposite roles.
         let twist = [Crossing { at: [(0, 0.0), (1, 0.0)] }, Crossing { at: [(0, 1.0), (1, 1.0)] }];
         assert_ne!(alternate(&twist).unwrap()[0], alternate(&twist).unwrap()[1]);
+        // A third that crosses one of them once between the two, and ends there.
         let odd = [
-            Crossing { at: [(0, 0.0), (1, 1.0)] },
-            Crossing { at: [(0, 1.0), (0, 2.0)] },
-            Crossing { at: [(0, 3.0), (1, 0.0)] },
+            Crossing { at: [(0, 0.0), (1, 0.0)] },
+            Crossing { at: [(0, 1.0), (1, 2.0)] },
+            Crossing { at: [(1, 1.0), (2, 0.0)] },
         ];
         assert!(alternate(&odd).is_none());
     }

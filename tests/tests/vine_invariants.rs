@@ -1,0 +1,481 @@
+//! Promises of vines that hold for any drawing: inside the container, fixed areas clear, no two
+//! branches touching but where one forks, clip art on its own stem alone, plait-work over and
+//! under in turn, copies of what repeats side by side without a seam, the same bytes for the
+//! same seed.
+//!
+//! The checks know nothing of cells: they read outlines and centre lines of the artwork. Who is
+//! whose parent they see from where a centre line starts.
+
+mod support;
+
+use kurbo::{BezPath, Point, Rect, Vec2};
+use proptest::prelude::*;
+use rinceau::geom::flatten::flatten;
+use rinceau::geom::near::{SegmentGrid, crosses, point_segment};
+use rinceau::geom::region::Region;
+use rinceau_format::{Artwork, Scene};
+use support::geometry::*;
+
+/// A centre line starts on that of its parent, but for rounding and chords: so much of the
+/// drawing's size.
+const ON_LINE: f64 = 2e-4;
+
+/// A stem as drawn.
+struct Stem {
+    outline: Piece,
+    /// Its centre line; several where it is cut.
+    line: Piece,
+    start: Point,
+    length: f64,
+    parent: Option<usize>,
+    /// The parent's width where this leaves it.
+    fork_width: f64,
+}
+
+impl Stem {
+    fn moved(&self, by: Vec2) -> Self {
+        Stem {
+            outline: moved(&self.outline, by),
+            line: moved(&self.line, by),
+            start: self.start + by,
+            ..*self
+        }
+    }
+}
+
+/// All that has grown.
+struct Plant {
+    stems: Vec<Stem>,
+    elements: Vec<Piece>,
+}
+
+impl Plant {
+    fn read(artwork: &Artwork) -> Self {
+        let open = |path: &BezPath| flatten(path, 0.004).into_iter().map(|subpath| subpath.points).collect();
+        let lines: Vec<Piece> =
+            artwork.group("spines").unwrap().items.iter().map(|item| open(&item.parts[0].path)).collect();
+        let all: Piece = lines.concat();
+        let on_line = ON_LINE * bounds(&all).size().max_side();
+        let main = artwork.group("stems").unwrap().items.iter().filter(|item| item.of == "stem").count();
+        let mut parents = vec![None; main];
+        for i in main..lines.len() {
+            let start = lines[i][0][0];
+            let nearest = (0..i)
+                .map(|j| (along(&lines[j], start).0, j))
+                .min_by(|a, b| a.0.total_cmp(&b.0))
+                .expect("a main stem");
+            assert!(nearest.0 < on_line, "branch {i} starts on no stem, at {start:?}: {nearest:?}");
+            parents.push(Some(nearest.1));
+        }
+        // Twigs are drawn first, and the centre lines are in the order of growth.
+        let level = |mut i: usize| {
+            let mut level = 0_usize;
+            while let Some(parent) = parents[i] {
+                (i, level) = (parent, level + 1);
+            }
+            level
+        };
+        let mut order: Vec<usize> = (0..lines.len()).collect();
+        order.sort_by_key(|&i| std::cmp::Reverse(level(i)));
+        let drawn = pieces(artwork, "stems");
+        let empty = drawn.iter().position(Vec::is_empty);
+        assert!(empty.is_none(), "stem {empty:?} of {} in drawing order has no outline", drawn.len());
+        assert_eq!(drawn.len(), lines.len());
+        let mut outlines: Vec<Piece> = vec![Vec::new(); lines.len()];
+        drawn.into_iter().zip(order).for_each(|(outline, i)| outlines[i] = outline);
+        let stem = |i: usize| Stem {
+            start: lines[i][0][0],
+            length: lines[i].iter().map(|line| length(line)).sum(),
+            parent: parents[i],
+            fork_width: parents[i]
+                .map_or(0.0, |parent: usize| 2.0 * depth(&outlines[parent], lines[i][0][0])),
+            outline: outlines[i].clone(),
+            line: lines[i].clone(),
+        };
+        let stems: Vec<Stem> = (0..lines.len()).map(stem).collect();
+        for (i, stem) in stems.iter().enumerate() {
+            let line = &stem.line[0];
+            let middle = line[line.len() / 2];
+            assert!(covers(&stem.outline, middle), "stem {i} is not around its centre line at {middle:?}");
+        }
+        Plant { stems, elements: pieces(artwork, "elements") }
+    }
+
+    /// This and, if it repeats, the copy beside it.
+    fn copies(&self, period: Option<f64>) -> Vec<Plant> {
+        let copy = |by: f64| Plant {
+            stems: self.stems.iter().map(|stem| stem.moved(Vec2::new(by, 0.0))).collect(),
+            elements: self.elements.iter().map(|element| moved(element, Vec2::new(by, 0.0))).collect(),
+        };
+        [0.0].into_iter().chain(period).map(copy).collect()
+    }
+}
+
+fn moved(piece: &[Vec<Point>], by: Vec2) -> Piece {
+    piece.iter().map(|contour| contour.iter().map(|&p| p + by).collect()).collect()
+}
+
+fn length(line: &[Point]) -> f64 {
+    line.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
+}
+
+/// Distance of a place from a centre line, and the arc length of what is nearest; gaps count
+/// as their chords.
+fn along(line: &[Vec<Point>], at: Point) -> (f64, f64) {
+    let points: Vec<Point> = line.concat();
+    let mut best = (f64::INFINITY, 0.0);
+    let mut s = 0.0;
+    for pair in points.windows(2) {
+        let d = pair[1] - pair[0];
+        let distance = point_segment(at, pair[0], pair[1]);
+        if distance < best.0 {
+            let t = ((at - pair[0]).dot(d) / d.hypot2()).clamp(0.0, 1.0);
+            best = (distance, s + t * d.hypot());
+        }
+        s += d.hypot();
+    }
+    best
+}
+
+/// Distance to the nearest outline.
+fn depth(piece: &[Vec<Point>], at: Point) -> f64 {
+    let distances = piece.iter().flat_map(|contour| sides(contour)).map(|(p, q)| point_segment(at, p, q));
+    distances.fold(f64::INFINITY, f64::min)
+}
+
+/// True if a contour of the piece winds around a place.
+fn covers(piece: &[Vec<Point>], at: Point) -> bool {
+    piece.iter().any(|contour| {
+        let mut winding = 0;
+        for (p, q) in sides(contour) {
+            let left = (q - p).cross(at - p) > 0.0;
+            if p.y <= at.y && q.y > at.y && left {
+                winding += 1;
+            } else if p.y > at.y && q.y <= at.y && !left {
+                winding -= 1;
+            }
+        }
+        winding != 0
+    })
+}
+
+/// Two things that touch.
+struct Touch {
+    a: usize,
+    b: usize,
+    at: Point,
+}
+
+/// Every place where outlines of two pieces cross, and every piece that lies within another.
+fn touches(pieces: &[&Piece]) -> Vec<Touch> {
+    let boxes: Vec<Rect> = pieces.iter().map(|piece| bounds(piece)).collect();
+    let all = boxes.iter().copied().reduce(|a, b| a.union(b)).unwrap();
+    let mut grid = SegmentGrid::new(all, all.size().max_side() / 150.0);
+    for (i, piece) in pieces.iter().enumerate() {
+        piece.iter().for_each(|contour| grid.insert_contour(contour, i as u32));
+    }
+    let mut found = Vec::new();
+    for (a, piece) in pieces.iter().enumerate() {
+        for (p, q) in piece.iter().flat_map(|contour| sides(contour)) {
+            grid.visit(p, q, 0.0, |r, s, b| {
+                let b = b as usize;
+                if b > a && crosses(p, q, r, s) {
+                    let (d, e) = (q - p, s - r);
+                    found.push(Touch { a, b, at: p + (r - p).cross(e) / d.cross(e) * d });
+                }
+                true
+            });
+        }
+    }
+    let met: std::collections::HashSet<(usize, usize)> =
+        found.iter().map(|touch| (touch.a, touch.b)).collect();
+    for a in 0..pieces.len() {
+        for b in a + 1..pieces.len() {
+            if !boxes[a].overlaps(boxes[b]) || met.contains(&(a, b)) {
+                continue;
+            }
+            for (inner, outer) in [(a, b), (b, a)] {
+                let at = pieces[inner][0][0];
+                if boxes[outer].contains(at) && covers(pieces[outer], at) {
+                    found.push(Touch { a, b, at });
+                }
+            }
+        }
+    }
+    found
+}
+
+/// What a touch is between.
+#[derive(Clone, Copy, Debug)]
+enum Thing {
+    /// Which copy, and which stem.
+    Stem(usize, usize),
+    Element(usize, usize),
+}
+
+/// Panics if anything touches what it should not. `gap` is the distance that was asked for.
+fn assert_apart(plant: &Plant, gap: f64, period: Option<f64>) {
+    let copies = plant.copies(period);
+    let mut things = Vec::new();
+    let mut all: Vec<&Piece> = Vec::new();
+    for (copy, plant) in copies.iter().enumerate() {
+        things.extend((0..plant.stems.len()).map(|i| Thing::Stem(copy, i)));
+        all.extend(plant.stems.iter().map(|stem| &stem.outline));
+        things.extend((0..plant.elements.len()).map(|i| Thing::Element(copy, i)));
+        all.extend(plant.elements.iter());
+    }
+    let mut on: Vec<Vec<(usize, usize, Point)>> = vec![Vec::new(); plant.elements.len()];
+    for Touch { a, b, at } in touches(&all) {
+        match (things[a], things[b]) {
+            (Thing::Stem(m, i), Thing::Stem(n, j)) => {
+                let allowed = may_touch(&copies, (m, i), (n, j), at, gap);
+                assert!(allowed, "stems {i} and {j} touch at {at:?} (copies {m}, {n})");
+            }
+            (Thing::Element(_, i), Thing::Element(_, j)) => panic!("elements {i} and {j} touch at {at:?}"),
+            (Thing::Stem(n, j), Thing::Element(m, i)) | (Thing::Element(m, i), Thing::Stem(n, j)) => {
+                // In the frame of the first copy; what is among copies of a second is told twice.
+                let back = Vec2::new(m as f64 * period.unwrap_or(0.0), 0.0);
+                on[i].push((j, n.abs_diff(m), at - back));
+            }
+        }
+    }
+    for (i, on) in on.iter().enumerate() {
+        assert!(!on.is_empty(), "element {i} is on no stem: {:?}", bounds(&plant.elements[i]));
+        let within = |own: usize, at: Point| {
+            let shifts = [0.0, period.unwrap_or(0.0), -period.unwrap_or(0.0)];
+            shifts.into_iter().any(|by| is_within(&plant.stems[own].outline, at - Vec2::new(by, 0.0)))
+        };
+        let is_own = |own: usize| on.iter().all(|&(j, _, at)| j == own || within(own, at));
+        assert!(on.iter().any(|&(own, ..)| is_own(own)), "element {i} touches several stems: {on:?}");
+    }
+}
+
+fn is_within(outline: &[Vec<Point>], at: Point) -> bool {
+    covers(outline, at) || depth(outline, at) < SLACK
+}
+
+/// True if two stems may touch at a place: a child its parent near its fork, siblings within
+/// their parent, and a main stem that repeats itself at the seam.
+fn may_touch(copies: &[Plant], (m, i): (usize, usize), (n, j): (usize, usize), at: Point, gap: f64) -> bool {
+    let (a, b) = (&copies[m].stems[i], &copies[n].stems[j]);
+    let near_fork =
+        |child: &Stem| at.distance(child.start) <= 8.0 * (child.fork_width + gap) + 0.35 * child.length;
+    if i == j {
+        let later = if m > n { a } else { b };
+        return a.parent.is_none() && at.distance(later.start) < 2.0 * depth(&a.outline, a.line[0][1]);
+    }
+    if a.parent == Some(j) {
+        return near_fork(a);
+    }
+    if b.parent == Some(i) {
+        return near_fork(b);
+    }
+    let Some(parent) = a.parent.filter(|_| a.parent == b.parent) else { return false };
+    copies.iter().any(|copy| is_within(&copy.stems[parent].outline, at))
+}
+
+/// Panics unless all lies inside the container and clear of what is fixed.
+fn assert_in_place(plant: &Plant, container: &Region, edge: f64, fixed: &[Vec<Point>], gap: f64) {
+    let stems = plant.stems.iter().map(|stem| &stem.outline);
+    for (i, piece) in stems.chain(&plant.elements).enumerate() {
+        let name = match i.checked_sub(plant.stems.len()) {
+            None => format!("stem {i}"),
+            Some(i) => format!("element {i}"),
+        };
+        assert_inside(&name, piece, container);
+        for &p in piece.iter().flatten() {
+            let apart = container.distance(p, edge);
+            assert!(
+                apart > edge - SLACK - 0.02 * edge,
+                "{name} is {apart} from the outline at {p:?}, not {edge}"
+            );
+        }
+        for circle in fixed {
+            let apart = distance(piece, std::slice::from_ref(circle), gap);
+            assert!(apart > gap - SLACK - 0.02 * gap, "{name} is {apart} from what is fixed, not {gap}");
+        }
+    }
+}
+
+/// Panics unless every stem that is cut goes under one other at each gap, and every stem goes
+/// over and under in turn.
+fn assert_plaited(plant: &Plant, crossings: f64) {
+    let cuts: usize = plant.stems.iter().map(|stem| stem.line.len() - 1).sum();
+    assert_eq!(cuts as f64, crossings, "cuts and crossings");
+    let mut ways: Vec<Vec<(f64, bool)>> = vec![Vec::new(); plant.stems.len()];
+    for (i, stem) in plant.stems.iter().enumerate() {
+        assert_eq!(stem.outline.len(), stem.line.len(), "stem {i} has a gap in its centre line alone");
+        for pair in stem.line.windows(2) {
+            let (from, to) = (pair[0][pair[0].len() - 1], pair[1][0]);
+            let is_over = |other: &Stem| {
+                other.line.iter().any(|line| line.windows(2).any(|pair| crosses(from, to, pair[0], pair[1])))
+            };
+            let over: Vec<usize> =
+                (0..plant.stems.len()).filter(|&j| j != i && is_over(&plant.stems[j])).collect();
+            let [over] = over[..] else { panic!("stem {i} goes under {over:?} at {from:?}") };
+            let middle = from.midpoint(to);
+            ways[i].push((along(&stem.line, middle).1, false));
+            ways[over].push((along(&plant.stems[over].line, middle).1, true));
+        }
+    }
+    for (i, way) in ways.iter_mut().enumerate() {
+        way.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let in_turn = way.windows(2).all(|pair| pair[0].1 != pair[1].1);
+        assert!(in_turn, "stem {i} goes over (true) and under: {way:?}");
+    }
+}
+
+type Params = Vec<(&'static str, String)>;
+
+fn one_of(values: &'static [&'static str]) -> impl Strategy<Value = String> {
+    prop::sample::select(values.to_vec()).prop_map(str::to_owned)
+}
+
+fn numbers(range: std::ops::Range<f64>) -> impl Strategy<Value = String> {
+    prop::collection::vec(range, 1..4)
+        .prop_map(|list| list.iter().map(|x| format!("{x:.2}")).collect::<Vec<_>>().join(","))
+}
+
+fn number(range: std::ops::Range<f64>) -> impl Strategy<Value = String> {
+    range.prop_map(|x| format!("{x:.3}"))
+}
+
+prop_compose! {
+    /// How curves run.
+    fn curves()(
+        levels in 1..6u8, turns in numbers(0.2..2.5), alpha in numbers(-1.0..1.5),
+        charge in one_of(&["power", "power", "power", "constant", "sine", "triangle", "1 -1 2", "0.2 1 3"]),
+        field in one_of(&["constant", "constant", "walls", "noise"]),
+        integrator in one_of(&["exact", "exact", "exact", "euler"]),
+        places in one_of(&["best", "best", "equal"]), rule in one_of(&["natural", "largest"]),
+        stem in one_of(&["wander", "wander", "curl"]), curl in one_of(&["right", "left"]),
+    ) -> Params {
+        vec![
+            ("levels", levels.to_string()), ("turns", turns), ("alpha", alpha), ("charge", charge),
+            ("field", field), ("integrator", integrator), ("places", places), ("rule", rule),
+            ("stem", stem), ("curl", curl),
+        ]
+    }
+}
+
+prop_compose! {
+    /// How they are drawn and what grows on them. The gap and the edge come first.
+    fn looks()(
+        gap in number(0.4..4.0), edge in number(0.4..8.0), width in number(3.0..11.0),
+        taper in number(0.0..3.0), tip_width in number(0.0..1.0), leaves in number(0.0..1.0),
+        size in number(0.4..2.0),
+        tips in one_of(&["flower", "bud", "leaf", "ball", "none", "flower,flower,bud", "leaf bud ball"]),
+        forks in one_of(&["leaf", "leaf leaf bud", "bud", "none", "flower leaf,none,ball"]),
+    ) -> Params {
+        vec![
+            ("gap", gap), ("edge", edge), ("stem-width", width), ("taper", taper), ("tip-width", tip_width),
+            ("leaves", leaves), ("clip-art", size), ("tips", tips), ("forks", forks),
+        ]
+    }
+}
+
+fn drawing(container: &str) -> String {
+    format!("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 400 400'>{container}</svg>")
+}
+
+/// Grows twice, which must give the same bytes. `None` if nothing fits.
+fn grown(svg: &str, params: &Params, seed: u64) -> Option<(Scene, Artwork)> {
+    let (document, scene) = read(svg);
+    let vine = || generated("vine", &scene, params, seed);
+    let artwork = match vine() {
+        Ok(artwork) => artwork,
+        Err(error) => {
+            assert_eq!(error.code(), "nothing-fits");
+            return None;
+        }
+    };
+    let again = vine().unwrap();
+    let bytes = |artwork: &Artwork| written(&document, artwork, ("vine", params, seed)).to_bytes();
+    assert!(bytes(&artwork) == bytes(&again), "two runs differ");
+    assert!(artwork.complete);
+    Some((scene, artwork))
+}
+
+fn value(params: &Params, name: &str) -> f64 {
+    params.iter().find(|(own, _)| *own == name).unwrap().1.parse().unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: cases(12), failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_shapes_and_settings(
+        outer in waves(), hole in waves(), hole_radius in 0.0..60.0f64, is_rectangle: bool,
+        fixed_at in (130.0..270.0f64, 130.0..270.0f64), seed in 0..1000u64, curves in curves(), looks in looks(),
+    ) {
+        let hole = if hole_radius > 12.0 { blob((200.0, 200.0), hole_radius, &hole) } else { String::new() };
+        let outer = if is_rectangle { "M40,60H360V330H40Z".to_owned() } else { blob((200.0, 200.0), 150.0, &outer) };
+        let outline = format!("{outer}{hole}");
+        let svg = drawing(&format!("<path id='c' class='rinceau-container' fill-rule='evenodd' d='{outline}'/><circle class='rinceau-fixed' cx='{}' cy='{}' r='15'/>", fixed_at.0, fixed_at.1));
+        let params = [looks, curves].concat();
+        let (gap, edge) = (value(&params, "gap"), value(&params, "edge"));
+        if let Some((_, artwork)) = grown(&svg, &params, seed) {
+            let container = Region::new(contours(&BezPath::from_svg(&outline).unwrap())).unwrap();
+            let plant = Plant::read(&artwork);
+            assert_in_place(&plant, &container, edge, &[disc(fixed_at, 15.0)], gap);
+            assert_apart(&plant, gap, None);
+        }
+    }
+
+    #[test]
+    fn plait_work_goes_over_and_under_in_turn(
+        outer in waves(), seed in 0..1000u64, curves in curves(), looks in looks(),
+    ) {
+        let outline = blob((200.0, 200.0), 170.0, &outer);
+        let svg = drawing(&format!("<path id='c' class='rinceau-container' d='{outline}'/>"));
+        let params = [looks, curves, vec![("plait", "true".to_owned())]].concat();
+        if let Some((_, artwork)) = grown(&svg, &params, seed) {
+            let plant = Plant::read(&artwork);
+            let container = Region::new(contours(&BezPath::from_svg(&outline).unwrap())).unwrap();
+            let gap = value(&params, "gap");
+            assert_in_place(&plant, &container, value(&params, "edge"), &[], gap);
+            assert_apart(&plant, gap, None);
+            assert_plaited(&plant, artwork.counts["crossings"]);
+        }
+    }
+
+    #[test]
+    fn what_repeats_has_no_seam(
+        size in (150.0..390.0f64, 60.0..200.0f64), fixed_at in (60.0..140.0f64, 60.0..140.0f64),
+        seed in 0..1000u64, curves in curves(), looks in looks(),
+    ) {
+        let (width, height) = ((size.0 * 100.0).round() / 100.0, size.1);
+        let svg = drawing(&format!("<rect id='c' class='rinceau-container' x='5' y='10' width='{width}' height='{height}'/><circle class='rinceau-fixed' cx='{}' cy='{}' r='8'/>", fixed_at.0, fixed_at.1));
+        let params = [looks, curves, vec![("repeat", "true".to_owned())]].concat();
+        if let Some((_, artwork)) = grown(&svg, &params, seed) {
+            let plant = Plant::read(&artwork);
+            let band = Rect::new(5.0 - 3.0 * width, 10.0, 5.0 + 4.0 * width, 10.0 + height);
+            let band = [(band.x0, band.y0), (band.x1, band.y0), (band.x1, band.y1), (band.x0, band.y1)];
+            let container = Region::new(vec![band.map(Point::from).to_vec()]).unwrap();
+            let circles = [-1.0, 0.0, 1.0].map(|k| disc((fixed_at.0 + k * width, fixed_at.1), 8.0));
+            let gap = value(&params, "gap");
+            assert_in_place(&plant, &container, value(&params, "edge"), &circles, gap);
+            assert_apart(&plant, gap, Some(width));
+        }
+    }
+}
+
+#[test]
+fn every_sample_keeps_its_promises() {
+    for path in samples_of("vine") {
+        let (document, scene) = read(std::fs::read(&path).unwrap());
+        println!("{}", path.display());
+        let vine = |seed| generated("vine", &scene, &[], seed).unwrap();
+        let artwork = vine(1);
+        assert!(artwork.complete);
+        let [container] = &scene.containers[..] else { continue };
+        let outlines = container.outlines.iter().flat_map(|outline| contours(&outline.path));
+        let plant = Plant::read(&artwork);
+        let region = Region::new(outlines.collect()).unwrap();
+        assert_in_place(&plant, &region, 0.0, &[], 0.0);
+        assert_apart(&plant, 0.0, None);
+        let bytes = |artwork: &Artwork, seed| written(&document, artwork, ("vine", &[], seed)).to_bytes();
+        assert!(bytes(&artwork, 1) == bytes(&vine(1), 1), "two runs differ");
+        assert!(bytes(&artwork, 1) != bytes(&vine(2), 1), "the seed changes nothing");
+    }
+}
