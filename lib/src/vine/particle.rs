@@ -246,6 +246,8 @@ impl<'a> Law<'a> {
                 break;
             }
         }
+        let last = nodes.last().map_or(0.0, |node: &Node| node.curvature);
+        nodes.push(Node { s, p, along: v / v.hypot(), curvature: last });
         nodes
     }
 }
