@@ -845,14 +845,132 @@ mod opened {
     }
 }
 
+mod vines {
+    use super::*;
+
+    fn grown(drawing: impl Into<Vec<u8>>, flags: &[&str]) -> String {
+        String::from_utf8(rinceau(["vine"]).args(flags).input(drawing).succeed().stdout).unwrap()
+    }
+
+    fn stems<'a, 'i>(xml: &'a roxmltree::Document<'i>) -> Vec<Node<'a, 'i>> {
+        let is_stem = |node: &Node| matches!(node.attribute((RINCEAU, "of")), Some("stem" | "branch"));
+        xml.descendants().filter(is_stem).collect()
+    }
+
+    #[test]
+    fn grow_in_every_sample() {
+        for sample in geometry::samples_of("vine") {
+            let name = sample.display().to_string();
+            let before = std::fs::read_to_string(&sample).unwrap();
+            let after = grown(before.as_str(), &[]);
+            assert_only_a_layer_was_added(&before, &after, &name);
+            let xml = parse(&after);
+            assert!(!stems(&xml).is_empty(), "{name}");
+            assert_eq!(layers(&xml)[0].attribute((RINCEAU, "result")), Some("vine"));
+            assert!(grown(after.as_str(), &[]) == after, "{name}: a second run changes something");
+        }
+    }
+
+    #[test]
+    fn have_ids_of_their_own_and_few_siblings() {
+        let text = grown(svg(CIRCLE), &["--levels", "6", "--stem-width", "1"]);
+        let xml = parse(&text);
+        assert!(stems(&xml).len() > 200, "the test needs more stems");
+        let mut ids: Vec<&str> = xml.descendants().filter_map(|node| node.attribute("id")).collect();
+        let all = ids.len();
+        ids.sort_unstable();
+        ids.dedup();
+        assert_eq!(ids.len(), all, "an id stands twice");
+        for node in layers(&xml)[0].descendants() {
+            assert!(node.children().filter(Node::is_element).count() <= 200);
+        }
+    }
+
+    #[test]
+    fn grow_in_what_is_named() {
+        let two = svg(
+            "<circle id=\"a\" cx=\"50\" cy=\"50\" r=\"40\"/><circle id=\"b\" cx=\"150\" cy=\"150\" r=\"40\"/>",
+        );
+        let text = grown(two, &["--id", "b", "--seed", "3", "--levels", "2"]);
+        let xml = parse(&text);
+        let [layer] = layers(&xml)[..] else { panic!("{} layers", layers(&xml).len()) };
+        assert_eq!(layer.attribute((RINCEAU, "source")), Some("b"));
+        assert_eq!(layer.attribute((RINCEAU, "seed")), Some("3"));
+        let params: serde_json::Value =
+            serde_json::from_str(layer.attribute((RINCEAU, "params")).unwrap()).unwrap();
+        assert_eq!(params, serde_json::json!({ "levels": "2" }));
+    }
+
+    /// Whoever selects a line along with a shape means it to be the stem.
+    #[test]
+    fn follow_an_open_path_selected_with_the_shape() {
+        let shape = "<rect id=\"a\" x=\"5\" y=\"5\" width=\"190\" height=\"190\"/>";
+        let line = "<path id=\"way\" d=\"M20,30 L100,60 L180,30\" fill=\"none\"/>";
+        let flags = ["--levels", "1", "--leaves", "0", "--tips", "none"];
+        let selected =
+            grown(svg(&format!("{shape}{line}")), &[&flags[..], &["--id", "a", "--id", "way"]].concat());
+        let marked = line.replace("id=", "class=\"rinceau-stem\" id=");
+        let marked = grown(svg(&format!("{shape}{marked}")), &[&flags[..], &["--id", "a"]].concat());
+        let outlines = |text: &str| -> Vec<String> {
+            stems(&parse(text)).iter().map(|stem| stem.attribute("d").unwrap().to_owned()).collect()
+        };
+        assert_eq!(outlines(&selected), outlines(&marked));
+    }
+
+    fn report(flags: &[&str]) -> serde_json::Value {
+        let folder = folder();
+        let path = folder.path().join("report.json");
+        rinceau(["vine", "--report"]).arg(&path).args(flags).input(svg(CIRCLE)).succeed();
+        serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn are_counted_and_timed() {
+        let report = report(&["--seed", "2", "--plait", "true"]);
+        assert_eq!(report["generator"], "vine");
+        assert_eq!(report["seed"], 2);
+        assert_eq!(report["complete"], true);
+        assert!(report["counts"]["stems"].as_f64().unwrap() > 5.0, "{report}");
+        assert!(report["counts"]["elements"].as_f64().unwrap() > 5.0, "{report}");
+        assert!(report["counts"]["crossings"].is_number(), "{report}");
+        for stage in ["cells", "stem", "branches", "leaves"] {
+            assert!(report["milliseconds"][stage].is_number(), "{stage}: {report}");
+        }
+    }
+
+    /// Whatever is there by then, or a sentence.
+    #[test]
+    fn end_when_the_time_does() {
+        let folder = folder();
+        let path = folder.path().join("report.json");
+        let flags = ["--levels", "8", "--branches", "1000", "--stem-width", "0.05", "--time-limit", "0.001"];
+        let done = rinceau(["vine", "--report"])
+            .arg(&path)
+            .args(&flags)
+            .input(svg(CIRCLE))
+            .limit(std::time::Duration::from_secs(10))
+            .done();
+        if done.code == Some(0) {
+            let report: serde_json::Value =
+                serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+            assert_eq!(report["complete"], false, "{report}");
+        } else {
+            assert_eq!(done.code, Some(1));
+            assert!(done.stderr.ends_with("[out-of-time]\n"), "{}", done.stderr);
+        }
+    }
+}
+
 /// The same bytes for any number of threads.
 #[test]
 fn threads_do_not_show() {
-    let packed_with = |threads: &str| {
-        let mut command = std::process::Command::new(support::binary());
-        command.arg("pack").arg(&support::samples()[0]).env("RAYON_NUM_THREADS", threads);
-        support::Run::of(command).succeed().stdout
-    };
-    let one = packed_with("1");
-    assert!(one == packed_with("2") && one == packed_with("5"));
+    for (generator, sample) in [("pack", &samples()[0]), ("vine", &geometry::samples_of("vine")[0])] {
+        let drawn_with = |threads: &str| {
+            let mut command = Command::new(binary());
+            command.arg(generator).arg(sample).env("RAYON_NUM_THREADS", threads);
+            Run::of(command).succeed().stdout
+        };
+        let one = drawn_with("1");
+        assert!(one == drawn_with("2") && one == drawn_with("5"), "{generator}");
+    }
 }

@@ -4,25 +4,14 @@
 
 mod support;
 
-use rinceau::params::Values;
-use rinceau::{Deadline, GENERATORS};
-use rinceau_format::{Artwork, Document, Recipe, Selection};
+use rinceau_format::{Artwork, Document};
+use support::geometry::{generated, read, samples_of, written};
 
-fn packed(bytes: Vec<u8>, params: &[(&str, &str)]) -> (Document, Artwork) {
-    let generator = &GENERATORS[0];
-    let document = Document::from_bytes(bytes).unwrap();
-    let scene = document.scene(&Selection::default()).unwrap();
-    let mut values = Values::default();
-    params.iter().for_each(|(name, value)| values.set(generator.table, name, value).unwrap());
-    let artwork = rinceau::generate(generator, &values, &scene, 1, &mut Deadline::new(None)).unwrap();
-    let recipe = Recipe {
-        generator: "pack".into(),
-        params: values.recipe(generator.table),
-        seed: 1,
-        sources: scene.containers.iter().map(|container| container.source.id.clone()).collect(),
-        label: "Ornament".into(),
-    };
-    (document.with_layer(&artwork, &recipe).unwrap(), artwork)
+fn drawn(name: &str, bytes: Vec<u8>, params: &[(&str, &str)]) -> (Document, Artwork) {
+    let params: Vec<(&str, String)> = params.iter().map(|&(name, value)| (name, value.to_owned())).collect();
+    let (document, scene) = read(bytes);
+    let artwork = generated(name, &scene, &params, 1).unwrap();
+    (written(&document, &artwork, (name, &params, 1)), artwork)
 }
 
 /// FNV-1a, 64 bits.
@@ -39,7 +28,7 @@ fn a_small_drawing_in_full() {
     <path class="rinceau-spine" d="M0,0H50"/></g>
 </svg>
 "##;
-    let (document, _) = packed(svg.as_bytes().to_vec(), &[("spacing", "14"), ("stretch", "1.2")]);
+    let (document, _) = drawn("pack", svg.as_bytes().to_vec(), &[("spacing", "14"), ("stretch", "1.2")]);
     insta::assert_snapshot!(document.text());
 }
 
@@ -47,7 +36,7 @@ fn a_small_drawing_in_full() {
 fn every_sample() {
     let mut table = String::new();
     for path in support::samples() {
-        let (document, artwork) = packed(std::fs::read(&path).unwrap(), &[]);
+        let (document, artwork) = drawn("pack", std::fs::read(&path).unwrap(), &[]);
         let count = |name: &str| artwork.counts[name];
         table += &format!(
             "{:12} {:3} elements {:3} fillers, coverage {:.3}, {:016x}\n",
@@ -55,6 +44,39 @@ fn every_sample() {
             count("elements"),
             count("fillers"),
             count("coverage"),
+            fingerprint(&document.to_bytes()),
+        );
+    }
+    insta::assert_snapshot!(table);
+}
+
+#[test]
+fn a_small_vine_in_full() {
+    let svg = r##"<svg xmlns="http://www.w3.org/2000/svg" xmlns:rinceau="urn:rinceau:1" viewBox="0 0 120 60">
+  <rect id="panel" class="rinceau-container" x="2" y="2" width="116" height="56"/>
+  <circle id="stone" class="rinceau-fixed" cx="96" cy="18" r="6" fill="#777777"/>
+  <path id="main" class="rinceau-stem" d="M8,50 L40,24 L76,40 L112,44" fill="none"/>
+  <g id="blade" class="rinceau-element" rinceau:kind="blade"><path d="M0,0C6,-4 12,-4 20,0C12,4 6,4 0,0Z" fill="#2a6b4f"/>
+    <path class="rinceau-spine" d="M0,0H20"/></g>
+</svg>
+"##;
+    let params = [("levels", "2"), ("forks", "blade"), ("tips", "ball"), ("stem-width", "2")];
+    let (document, _) = drawn("vine", svg.as_bytes().to_vec(), &params);
+    insta::assert_snapshot!(document.text());
+}
+
+#[test]
+fn every_vine() {
+    let mut table = String::new();
+    for path in samples_of("vine") {
+        let (document, artwork) = drawn("vine", std::fs::read(&path).unwrap(), &[]);
+        let count = |name: &str| artwork.counts[name];
+        table += &format!(
+            "{:20} {:4} stems {:4} elements {:3} crossings, {:016x}\n",
+            path.file_stem().unwrap().to_string_lossy(),
+            count("stems"),
+            count("elements"),
+            count("crossings"),
             fingerprint(&document.to_bytes()),
         );
     }

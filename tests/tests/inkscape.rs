@@ -115,6 +115,42 @@ fn a_selected_shape_fills_and_fills_anew() {
     assert!(elements(layer).len() > 10);
 }
 
+#[test]
+fn a_selected_shape_grows_a_vine_and_grows_anew() {
+    let user = User::new();
+    let plain = svg(
+        "<path id=\"leaf\" d=\"M 20,100 C 60,20 140,20 180,100 140,180 60,180 20,100 Z\" style=\"fill:#224466\"/>\n<rect id=\"frame\" x=\"1\" y=\"2\" width=\"190\" height=\"180\" style=\"fill:none\"/>",
+    );
+    let once = user.edit(&plain, "select-by-id:leaf;org.rinceau.vine.noprefs");
+    assert_eq!(rest(&once), rest(&plain));
+    let xml = parse(&once);
+    let [layer] = layers(&xml)[..] else { panic!("{} layers:\n{once:.3000}", layers(&xml).len()) };
+    assert_eq!(layer.attribute((INKSCAPE, "groupmode")), Some("layer"));
+    assert_eq!(layer.attribute((INKSCAPE, "label")), Some("Ornament - leaf"));
+    assert_eq!(layer.attribute((RINCEAU, "result")), Some("vine"));
+    assert_eq!(layer.attribute((RINCEAU, "source")), Some("leaf"));
+    assert_eq!(layer.attribute((RINCEAU, "seed")), Some("1"));
+    assert_eq!(layer.attribute((RINCEAU, "params")), Some("{}"), "defaults are no parameters");
+    let stems = sublayer(layer, "stems");
+    assert!(stems.children().filter(Node::is_element).count() > 5);
+    assert!(elements(layer).len() > 5, "{} elements", elements(layer).len());
+
+    // Saved by Inkscape, opened again: the layer is made anew, not added.
+    let faded = once.replacen("id=\"ornament-leaf\"", "id=\"ornament-leaf\" style=\"opacity:0.5\"", 1);
+    let twice = user.edit(&faded, "select-by-id:leaf;org.rinceau.vine.noprefs");
+    assert_eq!(rest(&twice), rest(&plain));
+    let xml = parse(&twice);
+    let [layer] = layers(&xml)[..] else { panic!("{} layers", layers(&xml).len()) };
+    assert_eq!(layer.attribute("id"), Some("ornament-leaf"));
+    assert_eq!(layer.attribute("style"), Some("opacity:0.5"));
+    assert!(elements(layer).len() > 5);
+}
+
+fn sublayer<'a, 'i>(layer: Node<'a, 'i>, label: &str) -> Node<'a, 'i> {
+    let found = layer.children().find(|node| node.attribute((INKSCAPE, "label")) == Some(label));
+    found.unwrap_or_else(|| panic!("no sublayer {label}"))
+}
+
 /// A drawing in millimetres with layers, a moved and turned group, and marks.
 const IN_MM: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" xmlns:sodipodi="http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd" xmlns:rinceau="urn:rinceau:1" width="210mm" height="297mm" viewBox="0 0 210 297">
   <g id="paper" inkscape:groupmode="layer" inkscape:label="Paper"><rect id="sheet" x="0" y="0" width="210" height="297" style="fill:#ffffee"/></g>

@@ -7,14 +7,19 @@ use std::path::Path;
 use std::time::Duration;
 use support::{CIRCLE, file, folder, gzip, rinceau, svg};
 
-/// A drawing and flags that `pack` must refuse.
+/// A drawing and flags that a generator must refuse.
 struct Case {
+    generator: &'static str,
     drawing: Vec<u8>,
     flags: Vec<(&'static str, String)>,
 }
 
 fn case(drawing: impl Into<Vec<u8>>) -> Case {
-    Case { drawing: drawing.into(), flags: Vec::new() }
+    Case { generator: "pack", drawing: drawing.into(), flags: Vec::new() }
+}
+
+fn vine(drawing: impl Into<Vec<u8>>) -> Case {
+    Case { generator: "vine", ..case(drawing) }
 }
 
 impl Case {
@@ -23,7 +28,7 @@ impl Case {
         self
     }
 
-    /// Runs `pack` as a person and as Inkscape do, and returns the sentence.
+    /// Runs the generator as a person and as Inkscape do, and returns the sentence.
     fn refusal(self) -> String {
         let folder = folder();
         let input = file(&folder, "in.svg", &self.drawing);
@@ -41,7 +46,7 @@ impl Case {
     }
 
     fn at_the_command_line(&self, input: &Path, output: &Path) -> String {
-        let mut run = rinceau(["pack"]).arg(input).arg("-o").arg(output);
+        let mut run = rinceau([self.generator]).arg(input).arg("-o").arg(output);
         for (name, value) in &self.flags {
             run = run.arg(format!("--{name}")).arg(value);
         }
@@ -58,7 +63,7 @@ impl Case {
         for (name, value) in others {
             run = run.arg(format!("--{}={value}", name.replace('-', "_")));
         }
-        let done = run.arg("--tool=pack").arg(input).done();
+        let done = run.arg(format!("--tool={}", self.generator)).arg(input).done();
         assert!(done.stdout == self.drawing, "Inkscape's drawing was changed");
         one_sentence(&done.stderr)
     }
@@ -539,6 +544,135 @@ fn files_that_cannot_be_opened_or_written() {
     insta::assert_snapshot!(sentence(&["pack", input, "-o", "DIR/out.svg"]), @"rinceau: '/nowhere/at/all/out.svg' cannot be written: no such file or directory. Check the folder, its permissions and the free space; nothing was changed. [cannot-write]");
     insta::assert_snapshot!(sentence(&["pack", input, "-o", "/"]), @"rinceau: '/' cannot be written: is a directory. Check the folder, its permissions and the free space; nothing was changed. [cannot-write]");
     insta::assert_snapshot!(sentence(&["pack", input, "-o", "/dev/full"]), @"rinceau: '/dev/full' cannot be written: no space left on device. Check the folder, its permissions and the free space; nothing was changed. [cannot-write]");
+}
+
+mod vines {
+    use super::*;
+
+    #[test]
+    fn without_a_container() {
+        insta::assert_snapshot!(vine(svg("<path class='rinceau-stem' d='M0,0H100'/>")).refusal(), @"");
+    }
+
+    #[test]
+    fn in_an_open_container() {
+        insta::assert_snapshot!(vine(svg("<path id='shape' class='rinceau-container' d='M10,10 H190 V190'/>")).refusal(), @"");
+    }
+
+    #[test]
+    fn of_charges_that_mean_nothing() {
+        let charge = |text: &str| vine(svg(CIRCLE)).flag("charge", text).refusal();
+        insta::assert_snapshot!(charge("banana"), @"");
+        insta::assert_snapshot!(charge("1 NaN"), @"");
+        insta::assert_snapshot!(charge("inf -1"), @"");
+        insta::assert_snapshot!(charge("1"), @"");
+        insta::assert_snapshot!(charge("0 0 0"), @"");
+    }
+
+    #[test]
+    fn with_clip_art_that_nobody_drew() {
+        insta::assert_snapshot!(vine(svg(CIRCLE)).flag("tips", "flower,thistle").refusal(), @"");
+        insta::assert_snapshot!(vine(svg(CIRCLE)).flag("forks", "leaf thorn").refusal(), @"");
+    }
+
+    #[test]
+    fn with_an_element_without_spine() {
+        insta::assert_snapshot!(vine(svg(&format!("{CIRCLE}\n<g id='leaf' class='rinceau-element'><path d='M50,50 60,60 90,50 60,40Z'/></g>"))).refusal(), @"");
+    }
+
+    #[test]
+    fn with_an_element_that_covers_nothing() {
+        insta::assert_snapshot!(vine(svg(&format!("{CIRCLE}\n<g id='leaf' class='rinceau-element'><path d='M50,50 H90' fill='none'/><path class='rinceau-spine' d='M50,50 H90'/></g>"))).refusal(), @"");
+    }
+
+    #[test]
+    fn too_wide_for_the_shape() {
+        insta::assert_snapshot!(vine(svg(CIRCLE)).flag("stem-width", "5000").refusal(), @"");
+        insta::assert_snapshot!(vine(svg(CIRCLE)).flag("stem-width", "100").refusal(), @"");
+        insta::assert_snapshot!(vine(svg(CIRCLE)).flag("gap", "5000").refusal(), @"");
+        insta::assert_snapshot!(vine(svg(CIRCLE)).flag("edge", "90").refusal(), @"");
+    }
+
+    #[test]
+    fn in_a_container_that_is_all_fixed() {
+        insta::assert_snapshot!(vine(svg(&format!("{CIRCLE}\n<rect class='rinceau-fixed' width='200' height='200'/>"))).refusal(), @"");
+    }
+
+    #[test]
+    fn with_what_a_container_misspells() {
+        insta::assert_snapshot!(vine(svg(&CIRCLE.replace("/>", " rinceau:turn=\"1\"/>"))).refusal(), @"");
+        insta::assert_snapshot!(vine(svg(&CIRCLE.replace("/>", " rinceau:turns=\"1,x\"/>"))).refusal(), @"");
+        insta::assert_snapshot!(vine(svg(&CIRCLE.replace("/>", " rinceau:charge=\"banana\"/>"))).refusal(), @"");
+    }
+
+    #[test]
+    fn beyond_all_bounds() {
+        insta::assert_snapshot!(vine(svg("<circle id='sun' class='rinceau-container' r='1e12'/>")).refusal(), @"");
+    }
+
+    /// What an artist drew as stem and cannot be one must not vanish without a word.
+    #[test]
+    fn along_a_stem_outside_every_container() {
+        let drawing = svg(&format!("{CIRCLE}\n<path id='main' class='rinceau-stem' d='M300,300 H400'/>"));
+        let done = rinceau(["vine"]).input(drawing).done();
+        assert!(
+            done.stderr.contains("'main'"),
+            "exit {:?}, not a word about the stem: {:?}",
+            done.code,
+            done.stderr
+        );
+        insta::assert_snapshot!(done.stderr, @"");
+    }
+
+    #[test]
+    fn from_a_seed_outside_every_container() {
+        let drawing =
+            svg(&format!("{CIRCLE}\n<circle id='pip' class='rinceau-seed' cx='300' cy='300' r='2'/>"));
+        let done = rinceau(["vine"]).input(drawing).done();
+        assert!(
+            done.stderr.contains("'pip'"),
+            "exit {:?}, not a word about the seed: {:?}",
+            done.code,
+            done.stderr
+        );
+        insta::assert_snapshot!(done.stderr, @"");
+    }
+
+    /// As small as a rounding error, and it still is a shape.
+    #[test]
+    fn of_no_size_are_drawn_or_refused() {
+        for r in ["1e-9", "1e-4", "1e9"] {
+            let done = rinceau(["vine"])
+                .input(svg(&format!("<circle id='sun' class='rinceau-container' r='{r}'/>")))
+                .done();
+            match done.code {
+                Some(0) => assert!(!done.text().contains("NaN") && !done.text().contains("inf"), "{r}"),
+                _ => drop(one_sentence(&done.stderr)),
+            }
+        }
+    }
+
+    #[test]
+    fn used_wrongly_are_exit_2() {
+        let wrong: [&[&str]; 9] = [
+            &["--levels", "0"],
+            &["--levels", "9"],
+            &["--turns", "1,x"],
+            &["--turns", ""],
+            &["--turns", "NaN"],
+            &["--length", "12,-3"],
+            &["--alpha", "2"],
+            &["--branches", "1e9"],
+            &["--stem", "zigzag"],
+        ];
+        for arguments in wrong {
+            let done = rinceau(["vine"]).args(arguments).input(svg(CIRCLE)).done();
+            assert_eq!(done.code, Some(2), "{arguments:?}: {}", done.stderr);
+            assert!(done.stdout.is_empty() && !done.stderr.is_empty(), "{arguments:?}");
+        }
+        let done = rinceau(["vine", "--turns=1,x"]).input(svg(CIRCLE)).done();
+        insta::assert_snapshot!(done.stderr.lines().next().unwrap(), @"");
+    }
 }
 
 /// A closed path, or what should be one, marked.

@@ -61,11 +61,12 @@ impl Plant {
         for i in main..lines.len() {
             let start = lines[i][0][0];
             let nearest = (0..i)
+                .filter(|&j| bounds(&lines[j]).inflate(on_line, on_line).contains(start))
                 .map(|j| (along(&lines[j], start).0, j))
                 .min_by(|a, b| a.0.total_cmp(&b.0))
-                .expect("a main stem");
-            assert!(nearest.0 < on_line, "branch {i} starts on no stem, at {start:?}: {nearest:?}");
-            parents.push(Some(nearest.1));
+                .filter(|nearest| nearest.0 < on_line);
+            assert!(nearest.is_some(), "branch {i} starts on no stem, at {start:?}");
+            parents.push(nearest.map(|nearest| nearest.1));
         }
         // Twigs are drawn first, and the centre lines are in the order of growth.
         let level = |mut i: usize| {
@@ -231,7 +232,12 @@ fn assert_apart(plant: &Plant, gap: f64, period: Option<f64>) {
                 let allowed = may_touch(&copies, (m, i), (n, j), at, gap);
                 assert!(allowed, "stems {i} and {j} touch at {at:?} (copies {m}, {n})");
             }
-            (Thing::Element(_, i), Thing::Element(_, j)) => panic!("elements {i} and {j} touch at {at:?}"),
+            (Thing::Element(_, i), Thing::Element(_, j)) => {
+                // Opposite leaves may meet within the stem that they both grow from.
+                let hidden =
+                    copies.iter().flat_map(|copy| &copy.stems).any(|stem| is_within(&stem.outline, at));
+                assert!(hidden, "elements {i} and {j} touch at {at:?}");
+            }
             (Thing::Stem(n, j), Thing::Element(m, i)) | (Thing::Element(m, i), Thing::Stem(n, j)) => {
                 // In the frame of the first copy; what is among copies of a second is told twice.
                 let back = Vec2::new(m as f64 * period.unwrap_or(0.0), 0.0);

@@ -38,10 +38,12 @@ impl Owner {
 }
 
 /// Where the cells lie.
+#[derive(Clone, Copy, Debug)]
 struct Grid {
     origin: Point,
-    /// Side of a cell.
+    /// Side of a cell, and its inverse.
     size: f64,
+    per_unit: f64,
     columns: usize,
     rows: usize,
     /// Columns after which the cells begin anew; 0 for no repeat.
@@ -73,8 +75,9 @@ impl Grid {
     /// Visits the cells whose middle lies within a radius, `None` for those beyond the grid,
     /// until `visit` says false. True if it never did.
     fn near(&self, at: Point, radius: f64, mut visit: impl FnMut(Option<usize>) -> bool) -> bool {
-        let (x, y) = ((at.x - self.origin.x) / self.size - 0.5, (at.y - self.origin.y) / self.size - 0.5);
-        let r = radius / self.size;
+        let x = (at.x - self.origin.x) * self.per_unit - 0.5;
+        let y = (at.y - self.origin.y) * self.per_unit - 0.5;
+        let r = radius * self.per_unit;
         for row in -floor(r - y)..=floor(y + r) {
             let dy = row as f64 - y;
             let half = (r * r - dy * dy).max(0.0).sqrt();
@@ -114,7 +117,7 @@ impl Cells {
         let inside = covered(region.contours(), origin, size, columns, rows);
         let owners = inside.iter().map(|&inside| if inside { Owner::FREE } else { Owner::OUTSIDE }).collect();
         let places = vec![0.0; columns * rows];
-        let grid = Grid { origin, size, columns, rows, wrap };
+        let grid = Grid { origin, size, per_unit: 1.0 / size, columns, rows, wrap };
         let mut cells = Cells { grid, owners, places };
         // What the edge passes near is outside for certain.
         for contour in region.contours() {
@@ -199,9 +202,7 @@ impl Cells {
         let owners = self.owners.iter().enumerate().map(|(i, &owner)| {
             if other.owner(self.middle(i)) == Owner::FREE { owner } else { Owner::OUTSIDE }
         });
-        let Grid { origin, size, columns, rows, wrap } = self.grid;
-        let grid = Grid { origin, size, columns, rows, wrap };
-        Cells { grid, owners: owners.collect(), places: self.places.clone() }
+        Cells { grid: self.grid, owners: owners.collect(), places: self.places.clone() }
     }
 
     /// Who claims a place.

@@ -14,8 +14,8 @@ const DRAWING: &str = include_str!("../../../samples/elements/vine.svg");
 
 /// Samples of an outline are this far apart, in lengths of the template.
 const APART: f64 = 1.0 / 18.0;
-/// Samples of its inside.
-const INSIDE: f64 = 1.0 / 9.0;
+/// Samples of its inside, so that nothing small settles there.
+const INSIDE: f64 = 1.0 / 7.0;
 
 /// Clip art of size 1: the origin at 0, growing along x.
 #[derive(Clone, Debug)]
@@ -28,8 +28,8 @@ pub(super) struct Art {
     pub radius: f64,
     /// Samples of what it covers, each with the distance to the next: first the outline.
     samples: Vec<(Point, f64)>,
-    /// How many of them lie on the outline.
-    outline: usize,
+    /// Half as many samples of the outline alone.
+    around: Vec<(Point, f64)>,
     /// True if it grows around its origin, as a flower does.
     pub central: bool,
 }
@@ -98,7 +98,7 @@ impl Art {
             names,
             parts,
             radius: radius(&contours),
-            outline: samples.iter().filter(|(_, apart)| *apart == APART).count(),
+            around: outline_samples(&contours, 2.0 * APART),
             samples,
             central: middle < 0.2 * bounds.size().max_side(),
         })
@@ -123,7 +123,8 @@ impl Art {
         for &(p, apart) in &self.samples {
             cells.claim(id, pose * p, 0.0, apart * size, 0.0);
         }
-        for &(p, apart) in &self.samples[..self.outline] {
+        // The gap is wide against the samples of the outline: some of them are enough.
+        for &(p, apart) in self.around.iter() {
             cells.claim_gap(id, pose * p, gap, apart * size, 0.0);
         }
     }
@@ -157,7 +158,8 @@ fn radius(contours: &[Contour]) -> f64 {
     contours.iter().flatten().map(|p| p.to_vec2().hypot()).fold(0.0, f64::max)
 }
 
-fn samples(contours: &[Contour]) -> Vec<(Point, f64)> {
+/// Samples of outlines at equal distances.
+fn outline_samples(contours: &[Contour], apart: f64) -> Vec<(Point, f64)> {
     let mut samples = Vec::new();
     for contour in contours {
         let Some(&last) = contour.last() else { continue };
@@ -167,13 +169,19 @@ fn samples(contours: &[Contour]) -> Vec<(Point, f64)> {
             let length = previous.distance(p);
             let mut s = left;
             while s < length {
-                samples.push((previous.lerp(p, s / length), APART));
-                s += APART;
+                samples.push((previous.lerp(p, s / length), apart));
+                s += apart;
             }
             left = s - length;
             previous = p;
         }
     }
+    samples
+}
+
+/// Samples of what contours cover.
+fn samples(contours: &[Contour]) -> Vec<(Point, f64)> {
+    let mut samples = outline_samples(contours, APART);
     // What is farthest from the stem meets others first.
     samples.sort_by(|(p, _), (q, _)| q.to_vec2().hypot2().total_cmp(&p.to_vec2().hypot2()));
     let Some(region) = Region::new(contours.to_vec()) else { return samples };
@@ -182,9 +190,8 @@ fn samples(contours: &[Contour]) -> Vec<(Point, f64)> {
     for row in 0..count(bounds.height()) {
         for column in 0..count(bounds.width()) {
             let at = bounds.origin() + INSIDE * kurbo::Vec2::new(column as f64 + 0.5, row as f64 + 0.5);
-            if region.contains(at) {
-                // A square's corners are farther than its sides.
-                samples.push((at, 1.5 * INSIDE));
+            if region.contains(at) && region.distance(at, INSIDE) > 0.5 * INSIDE {
+                samples.push((at, 0.9 * INSIDE));
             }
         }
     }
@@ -265,7 +272,7 @@ fn ball() -> Art {
         id: "ball".into(),
         builtin: true,
         names: vec!["ball".into()],
-        outline: samples.len(),
+        around: outline_samples(&contours, 2.0 * APART),
         samples,
         radius: radius(&contours),
         parts,

@@ -74,9 +74,10 @@ struct Beside {
 #[derive(Clone, Copy, Debug)]
 struct Site {
     parent: usize,
+    /// The parent there.
+    start: Node,
     s: f64,
     side: f64,
-    longest: f64,
 }
 
 /// A site and the length to try there next, the longest first.
@@ -214,7 +215,16 @@ impl<'a> Plant<'a> {
             if taken.len() >= limit || taken.iter().any(close) || self.is_near_crossing(site.parent, site.s) {
                 continue;
             }
-            match self.fitting(&site, offer.length, offer.length * SHORTER * 1.01) {
+            // What a look rules out needs no turn of its own.
+            let length = self.not_ruled_out(&site, offer.length);
+            if length < self.shortest() {
+                continue;
+            }
+            if length < offer.length {
+                heap.push(Offer { length, ..offer });
+                continue;
+            }
+            match self.fitting(&site, length, length * SHORTER * 1.01) {
                 Some((_, branch, crossings)) => {
                     forks[site.parent].push((site.s, site.side));
                     self.crossings = crossings;
@@ -225,10 +235,7 @@ impl<'a> Plant<'a> {
                     }
                     self.offer(index, &mut heap, &mut order);
                 }
-                None if offer.length * SHORTER > self.shortest() => {
-                    heap.push(Offer { length: offer.length * SHORTER, ..offer });
-                }
-                None => {}
+                None => heap.push(Offer { length: length * SHORTER, ..offer }),
             }
         }
         true
@@ -241,14 +248,15 @@ impl<'a> Plant<'a> {
             return;
         }
         let length = stem.end;
-        let step = (1.2 * stem.taper.start + self.sizes.gap).max(length / 48.0);
+        let step = (1.4 * stem.taper.start + self.sizes.gap).max(length / 32.0);
         // Not at the very start, where the parent is still near, nor under the tip's flower.
         let mut s = if stem.parent.is_some() { (0.06 * length).max(2.0 * step) } else { 0.6 * step };
         while s < 0.96 * length {
+            let (start, longest) = (stem.at(s), self.longest(parent, s));
             for side in [1.0, -1.0] {
-                let site = Site { parent, s, side, longest: self.longest(parent, s) };
+                let site = Site { parent, start, s, side };
                 *order += 1;
-                heap.push(Offer { length: site.longest, order: *order, site });
+                heap.push(Offer { length: longest, order: *order, site });
             }
             s += step;
         }
@@ -280,8 +288,9 @@ impl<'a> Plant<'a> {
             for i in 0..if level + 1 < self.params.levels { count } else { 0 } {
                 let s = (i + 1) as f64 / (count + 1) as f64 * length;
                 let side = if i % 2 == 0 { first } else { -first };
-                let site = Site { parent, s, side, longest: self.longest(parent, s) };
-                if let Some((_, branch, crossings)) = self.fitting(&site, site.longest, self.shortest()) {
+                let site = Site { parent, start: self.stems[parent].at(s), s, side };
+                let longest = self.longest(parent, s);
+                if let Some((_, branch, crossings)) = self.fitting(&site, longest, self.shortest()) {
                     self.crossings = crossings;
                     self.grow(branch, &site);
                     if self.stems.len() >= most {
@@ -304,12 +313,11 @@ impl<'a> Plant<'a> {
     fn fitting(&self, site: &Site, longest: f64, shortest: f64) -> Option<(f64, Stem, Vec<Crossing>)> {
         let parent = &self.stems[site.parent];
         let level = parent.level + 1;
-        let start = parent.at(site.s);
         let width = parent.width(site.s);
         let mut length = longest;
         while length >= shortest {
             let taper = self.taper(width.min(length / SLENDER));
-            if let Some((nodes, met)) = self.curve(site, level, &start, length, &taper) {
+            if let Some((nodes, met)) = self.curve(site, level, length, &taper) {
                 let stem = Stem::new(level, Some((site.parent, site.s)), site.side, nodes, taper);
                 if let Some(crossings) =
                     self.crossings(&stem, &met).filter(|_| self.parts_from_parent(&stem, length))
@@ -340,27 +348,13 @@ impl<'a> Plant<'a> {
     }
 
     /// A branch of some length from a place, if it touches nothing.
-    fn curve(
-        &self,
-        site: &Site,
-        level: usize,
-        start: &Node,
-        length: f64,
-        taper: &Taper,
-    ) -> Option<(Vec<Node>, Vec<Met>)> {
-        let fork = Fork {
-            id: self.ids[site.parent],
-            s: site.s,
-            reach: (5.0 * (self.stems[site.parent].width(site.s) + self.sizes.gap)).max(0.3 * length),
-        };
+    fn curve(&self, site: &Site, level: usize, length: f64, taper: &Taper) -> Option<(Vec<Node>, Vec<Met>)> {
+        let fork = self.fork(site, length);
         if self.params.field == "constant" {
             // All curves of a level are similar: look first, build then.
             let form = &self.forms[level];
-            let pose = Pose::new(start, length, site.side);
+            let pose = Pose::new(&site.start, length, site.side);
             let total = form.length() * length;
-            if self.hits_something(form, &pose, fork) {
-                return None;
-            }
             let nodes = form.nodes.iter().map(|node| pose.node(node));
             let met = self.way(nodes, total, taper, Some(fork))?;
             return Some((form.nodes.iter().map(|node| pose.node(node)).collect(), met));
@@ -370,9 +364,31 @@ impl<'a> Plant<'a> {
             of_level(&self.params.alpha, level).unwrap_or(0.5),
             of_level(&self.params.turns, level).unwrap_or(1.0) * std::f64::consts::TAU,
         );
-        let nodes = follow(&law, *start, length, site.side, |p| self.strength(p));
+        let nodes = follow(&law, site.start, length, site.side, |p| self.strength(p));
         let met = self.way(nodes.iter().copied(), length, taper, Some(fork))?;
         Some((nodes, met))
+    }
+
+    /// The longest length, `length` at most, that a look does not rule out.
+    fn not_ruled_out(&self, site: &Site, mut length: f64) -> f64 {
+        if self.params.field != "constant" {
+            return length;
+        }
+        let parent = &self.stems[site.parent];
+        let (form, fork) = (&self.forms[parent.level + 1], self.fork(site, length));
+        let shortest = self.shortest();
+        while length >= shortest
+            && self.hits_something(form, &Pose::new(&site.start, length, site.side), fork)
+        {
+            length *= SHORTER;
+        }
+        length
+    }
+
+    /// Where a branch of some length leaves its parent.
+    fn fork(&self, site: &Site, length: f64) -> Fork {
+        let near = 5.0 * (self.stems[site.parent].width(site.s) + self.sizes.gap);
+        Fork { id: self.ids[site.parent], s: site.s, reach: near.max(0.3 * length) }
     }
 
     /// A look at a few places on the centre line, from the far side: most of what does not fit
@@ -637,6 +653,10 @@ impl<'a> Plant<'a> {
                 }
             }
         }
+        // Places near each other one after the other, as memory likes it.
+        let tile = 40.0 * self.sizes.width;
+        let key = |site: &Beside| ((site.node.p.y / tile) as i64, (site.node.p.x / tile) as i64);
+        sites.sort_by_key(key);
         let mut last = vec![None; self.stems.len()];
         // Large ones everywhere before any small one.
         for (round, scale) in SCALES.into_iter().enumerate() {
@@ -702,7 +722,12 @@ impl<'a> Plant<'a> {
             let origin = node.p + side * (0.5 * width - 0.06 * size).max(0.0) * left_of(node.along);
             let base = 0.5 * width + 0.26 * size;
             for lean in LEAN {
-                let pose = posed(origin, rotated(node.along, side * lean), size, side < 0.0);
+                // A look at its middle first.
+                let along = rotated(node.along, side * lean);
+                if self.cells.owner(origin + 0.75 * size * along) != Owner::FREE {
+                    continue;
+                }
+                let pose = posed(origin, along, size, side < 0.0);
                 let may = |at: Point, owner: Owner, place: f64| {
                     let distance = at.distance(origin);
                     let own = owner.id() == Some(id) && (place - node.s).abs() < 0.5 * size + 2.0 * near;

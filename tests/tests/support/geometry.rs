@@ -2,13 +2,13 @@
 //! an ornament was made.
 
 use super::root;
-use kurbo::{BezPath, Point, Rect};
+use kurbo::{Affine, BezPath, Point, Rect};
 use rinceau::geom::flatten::flatten;
 use rinceau::geom::near::segment_segment;
 use rinceau::geom::region::Region;
 use rinceau::params::Values;
 use rinceau::{Deadline, GENERATORS, Generator};
-use rinceau_format::{Artwork, Document, Error, Recipe, Scene, Selection};
+use rinceau_format::{Artwork, Document, Error, Item, Recipe, Scene, Selection};
 use std::path::PathBuf;
 
 /// Written coordinates are rounded to three decimals, and outlines are flattened for the
@@ -105,11 +105,15 @@ pub fn contours(path: &BezPath) -> Piece {
     flatten(path, FLATNESS).into_iter().map(|subpath| subpath.points).collect()
 }
 
-/// Outlines of every piece that a group places.
+/// Outlines of every piece that a group places, clones as what they show.
 pub fn pieces(artwork: &Artwork, group: &str) -> Vec<Piece> {
     let items = artwork.group(group).map(|group| group.items.as_slice()).unwrap_or_default();
-    let of_item = |item: &rinceau_format::Item| {
-        item.parts.iter().flat_map(|part| contours(&(part.transform * part.path.clone()))).collect()
+    let of_item = |item: &Item| {
+        let (parts, pose) = match item.clone {
+            Some((symbol, pose)) => (&artwork.symbols[symbol].parts, pose),
+            None => (&item.parts, Affine::IDENTITY),
+        };
+        parts.iter().flat_map(|part| contours(&(pose * part.transform * part.path.clone()))).collect()
     };
     items.iter().map(of_item).collect()
 }
