@@ -65,7 +65,11 @@ impl Plant {
                 .map(|j| (along(&lines[j], start).0, j))
                 .min_by(|a, b| a.0.total_cmp(&b.0))
                 .filter(|nearest| nearest.0 < on_line);
-            assert!(nearest.is_some(), "branch {i} starts on no stem, at {start:?}");
+            assert!(
+                nearest.is_some(),
+                "branch {i} starts on no stem, at {start:?}, {:?} of {on_line}",
+                lines[..i].iter().map(|line| along(line, start).0).fold(9.0, f64::min)
+            );
             parents.push(nearest.map(|nearest| nearest.1));
         }
         // Twigs are drawn first, and the centre lines are in the order of growth.

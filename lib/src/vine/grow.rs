@@ -644,7 +644,7 @@ impl<'a> Plant<'a> {
         const SCALES: [f64; 5] = [1.0, 0.8, 0.64, 0.5, 0.4];
         let mut sites: Vec<Beside> = Vec::new();
         for (index, stem) in self.stems.iter().enumerate() {
-            let step = (0.5 * self.art_size(stem.level)).max(2.0 * self.sizes.gap) / wanted;
+            let step = (0.7 * self.art_size(stem.level)).max(2.0 * self.sizes.gap) / wanted;
             let count = (stem.end / step).ceil().max(1.0);
             for i in 0..count as usize {
                 let s = (i as f64 + 0.6) / count * stem.end;
@@ -722,9 +722,11 @@ impl<'a> Plant<'a> {
             let origin = node.p + side * (0.5 * width - 0.06 * size).max(0.0) * left_of(node.along);
             let base = 0.5 * width + 0.26 * size;
             for lean in LEAN {
-                // A look at its middle first.
+                // A look along its middle first.
+                const LOOKS: [f64; 3] = [1.05, 0.75, 0.45];
                 let along = rotated(node.along, side * lean);
-                if self.cells.owner(origin + 0.75 * size * along) != Owner::FREE {
+                let taken = |&share: &f64| self.cells.owner(origin + share * size * along) != Owner::FREE;
+                if LOOKS.iter().any(taken) {
                     continue;
                 }
                 let pose = posed(origin, along, size, side < 0.0);
