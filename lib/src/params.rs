@@ -47,6 +47,8 @@ pub enum Page {
     Basic,
     /// The rest.
     More,
+    /// How curves run, for generators that draw them.
+    Curves,
 }
 
 /// One parameter: everything that is ever said about it.

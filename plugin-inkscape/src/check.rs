@@ -37,7 +37,7 @@ pub fn summary(document: &Document, scene: &Scene) -> Result<String, Error> {
     for element in scene.elements.iter().filter(|element| element.template.spine.is_none()) {
         let _ = writeln!(
             out,
-            "{}: the element '{}' has no spine, so pack cannot use it",
+            "{}: the element '{}' has no spine, so nothing can place it",
             element.source.at, element.source.id
         );
     }

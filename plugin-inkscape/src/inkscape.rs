@@ -105,9 +105,15 @@ impl Call {
         let mut values = Values::default();
         for (name, value) in &mut self.params {
             let spec = generator.table.iter().find(|spec| spec.name == name);
+            // The dialog's lengths are all in the unit chosen beside them.
             if spec.is_some_and(|spec| spec.kind == Kind::Length) && value.parse() != Ok(0.0) {
-                // The dialog's lengths are all in the unit chosen beside them.
                 value.push_str(&unit);
+            } else if spec.is_some_and(|spec| spec.kind == Kind::Lengths) {
+                let bare = |item: &&str| item.trim().parse::<f64>().is_ok_and(|length| length != 0.0);
+                let with = |item: &str| {
+                    if bare(&item) { format!("{}{unit}", item.trim()) } else { item.trim().to_owned() }
+                };
+                *value = value.split(',').map(with).collect::<Vec<_>>().join(",");
             }
             let default = spec.map(|spec| spec.default);
             // A dialog passes every parameter, with all the digits of its spin buttons.

@@ -12,6 +12,10 @@ const MENU: &str = "Ornament";
 const UNITS: &[(&str, &str)] =
     &[("document", "units of the document"), ("mm", "mm"), ("px", "px"), ("in", "inches"), ("pt", "pt")];
 
+/// Pages of a dialog, in order.
+const PAGES: [(Page, &str, &str); 3] =
+    [(Page::Basic, "basic", "Basic"), (Page::More, "more", "More"), (Page::Curves, "curves", "Curves")];
+
 /// Roles in the menu, with what the menu calls them.
 const MARKS: &[(&str, &str)] = &[
     ("container", "Container (a shape to fill)"),
@@ -20,6 +24,8 @@ const MARKS: &[(&str, &str)] = &[
     ("element", "Element (a group to fill with)"),
     ("spine", "Spine (from an element's base to its tip)"),
     ("fixed-spine", "Fixed spine (a line an element must lie along)"),
+    ("stem", "Stem (the main stem of a vine)"),
+    ("seed", "Seed (where a vine starts)"),
     ("none", "Clear marks"),
 ];
 
@@ -119,7 +125,10 @@ fn dialog(generator: &Generator, binary: &str) -> String {
     inx.0.start_element("param");
     inx.0.write_attribute("name", "tab");
     inx.0.write_attribute("type", "notebook");
-    for (page, name, title) in [(Page::Basic, "basic", "Basic"), (Page::More, "more", "More")] {
+    for (page, name, title) in PAGES {
+        if generator.table.iter().all(|spec| spec.page != page) {
+            continue;
+        }
         inx.0.start_element("page");
         inx.0.write_attribute("name", name);
         inx.0.write_attribute("gui-text", title);
@@ -173,6 +182,13 @@ fn help(generator: &Generator) -> &'static [&'static str] {
             "For more, mark objects with Extensions > Ornament > Mark as: shapes to fill as containers, lines as guides, what must stay free as fixed, and your own leaves as elements, each grouped with a straight spine.",
             "Run it again after a change: the layer is replaced, not added.",
             "A length of 0 is chosen to suit the size of the shape. Lengths are in the units of the document unless you choose another unit.",
+        ],
+        "vine" => &[
+            "Select a closed shape and press Apply: a vine finds its way through it, with leaves and flowers.",
+            "Select open lines together with the shape, and they become its main stems: the vine runs smoothly through their nodes.",
+            "For more, mark objects with Extensions > Ornament > Mark as: shapes to fill as containers, lines as stems, small dots as seeds where a stem starts, what must stay free as fixed. A group marked as element, with a straight spine and the kind leaf, flower or bud, is used instead of the built-in ones.",
+            "Lists such as 1.4,1.2,1 give a value per level: the main stem first, then its branches, then theirs.",
+            "Leaves and flowers are clones: edit one in the layer's symbols, and all follow. For cutting and plotting choose copies, and one shape or lines for the stems.",
         ],
         _ => &[],
     }

@@ -8,9 +8,12 @@ use std::fmt::Write;
 fn page(generator: &Generator) -> String {
     let mut out = format!("# rinceau {}\n\n{}.\n\n", generator.name, generator.about);
     out += "Lengths are in user units of the drawing, or with a unit (`mm cm in pt px`) in real size on paper.\n";
-    out += "A container may set any of these for itself: `rinceau:spacing=\"8\"`.\n\n";
+    out += "A container may set any of these for itself, as an attribute `rinceau:` and the name.\n\n";
     out += "This page is generated from the parameter table; edit that.\n";
-    for (page, title) in [(Page::Basic, "Basic"), (Page::More, "More")] {
+    for (page, title) in [(Page::Basic, "Basic"), (Page::More, "More"), (Page::Curves, "Curves")] {
+        if generator.table.iter().all(|spec| spec.page != page) {
+            continue;
+        }
         let _ = write!(out, "\n## {title}\n\n");
         for spec in generator.table.iter().filter(|spec| spec.page == page) {
             parameter(&mut out, spec);

@@ -593,7 +593,7 @@ mod check {
         page 200.00 x 200.00, one unit is 1.0000 px
         2:1: guide 'sun'
         3:1: element 'leaf'
-        3:1: the element 'leaf' has no spine, so pack cannot use it
+        3:1: the element 'leaf' has no spine, so nothing can place it
         2:44: rinceau:role says 'guide' but the class at 2:18 says 'container'; the attribute is used
         4:1: the spine 'lost' is in no element and is not used
         nothing is marked as container: select a closed shape when you run a generator, or mark one

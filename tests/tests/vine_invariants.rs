@@ -13,7 +13,8 @@ use proptest::prelude::*;
 use rinceau::geom::flatten::flatten;
 use rinceau::geom::near::{SegmentGrid, crosses, point_segment};
 use rinceau::geom::region::Region;
-use rinceau_format::{Artwork, Scene};
+use rinceau_format::{Artwork, Container, Scene};
+use std::collections::HashSet;
 use support::geometry::*;
 
 /// A centre line starts on that of its parent, but for rounding and chords: so much of the
@@ -56,38 +57,24 @@ impl Plant {
             artwork.group("spines").unwrap().items.iter().map(|item| open(&item.parts[0].path)).collect();
         let all: Piece = lines.concat();
         let on_line = ON_LINE * bounds(&all).size().max_side();
-        let main = artwork.group("stems").unwrap().items.iter().filter(|item| item.of == "stem").count();
-        let mut parents = vec![None; main];
-        for i in main..lines.len() {
+        let drawn = pieces(artwork, "stems");
+        let items = &artwork.group("stems").unwrap().items;
+        assert_eq!(drawn.len(), lines.len());
+        let places = matched(&lines, &drawn);
+        let outlines: Vec<Piece> = places.iter().map(|&place| drawn[place].clone()).collect();
+        let parent = |i: usize| {
             let start = lines[i][0][0];
-            let nearest = (0..i)
-                .filter(|&j| bounds(&lines[j]).inflate(on_line, on_line).contains(start))
+            let nearest = (0..lines.len())
+                .filter(|&j| j != i && bounds(&lines[j]).inflate(on_line, on_line).contains(start))
                 .map(|j| (along(&lines[j], start).0, j))
                 .min_by(|a, b| a.0.total_cmp(&b.0))
-                .filter(|nearest| nearest.0 < on_line);
-            assert!(
-                nearest.is_some(),
-                "branch {i} starts on no stem, at {start:?}, {:?} of {on_line}",
-                lines[..i].iter().map(|line| along(line, start).0).fold(9.0, f64::min)
-            );
-            parents.push(nearest.map(|nearest| nearest.1));
-        }
-        // Twigs are drawn first, and the centre lines are in the order of growth.
-        let level = |mut i: usize| {
-            let mut level = 0_usize;
-            while let Some(parent) = parents[i] {
-                (i, level) = (parent, level + 1);
-            }
-            level
+                .filter(|nearest| nearest.0 < on_line)
+                .map(|nearest| nearest.1);
+            let is_main = items[places[i]].of == "stem";
+            assert!(is_main || nearest.is_some(), "branch {i} starts on no stem, at {start:?}");
+            nearest
         };
-        let mut order: Vec<usize> = (0..lines.len()).collect();
-        order.sort_by_key(|&i| std::cmp::Reverse(level(i)));
-        let drawn = pieces(artwork, "stems");
-        let empty = drawn.iter().position(Vec::is_empty);
-        assert!(empty.is_none(), "stem {empty:?} of {} in drawing order has no outline", drawn.len());
-        assert_eq!(drawn.len(), lines.len());
-        let mut outlines: Vec<Piece> = vec![Vec::new(); lines.len()];
-        drawn.into_iter().zip(order).for_each(|(outline, i)| outlines[i] = outline);
+        let parents: Vec<Option<usize>> = (0..lines.len()).map(parent).collect();
         let stem = |i: usize| Stem {
             start: lines[i][0][0],
             length: lines[i].iter().map(|line| length(line)).sum(),
@@ -98,11 +85,6 @@ impl Plant {
             line: lines[i].clone(),
         };
         let stems: Vec<Stem> = (0..lines.len()).map(stem).collect();
-        for (i, stem) in stems.iter().enumerate() {
-            let line = &stem.line[0];
-            let middle = line[line.len() / 2];
-            assert!(covers(&stem.outline, middle), "stem {i} is not around its centre line at {middle:?}");
-        }
         Plant { stems, elements: pieces(artwork, "elements") }
     }
 
@@ -114,6 +96,28 @@ impl Plant {
         };
         [0.0].into_iter().chain(period).map(copy).collect()
     }
+}
+
+/// The outline around each centre line.
+fn matched(lines: &[Piece], outlines: &[Piece]) -> Vec<usize> {
+    let boxes: Vec<Rect> = outlines.iter().map(|outline| bounds(outline)).collect();
+    let around = |(i, line): (usize, &Piece)| {
+        let points: Vec<Point> = line.concat();
+        let samples: Vec<Point> = (1..8).map(|k| points[(points.len() - 1) * k / 8]).collect();
+        let share =
+            |j: usize| samples.iter().filter(|&&p| boxes[j].contains(p) && covers(&outlines[j], p)).count();
+        let best = (0..outlines.len()).max_by_key(|&j| share(j)).expect("an outline");
+        assert!(
+            share(best) == samples.len(),
+            "no outline is around the centre line {i}, at {:?}",
+            samples[3]
+        );
+        best
+    };
+    let places: Vec<usize> = lines.iter().enumerate().map(around).collect();
+    let distinct: HashSet<usize> = places.iter().copied().collect();
+    assert_eq!(distinct.len(), lines.len(), "centre lines share an outline");
+    places
 }
 
 fn moved(piece: &[Vec<Point>], by: Vec2) -> Piece {
@@ -192,8 +196,7 @@ fn touches(pieces: &[&Piece]) -> Vec<Touch> {
             });
         }
     }
-    let met: std::collections::HashSet<(usize, usize)> =
-        found.iter().map(|touch| (touch.a, touch.b)).collect();
+    let met: HashSet<(usize, usize)> = found.iter().map(|touch| (touch.a, touch.b)).collect();
     for a in 0..pieces.len() {
         for b in a + 1..pieces.len() {
             if !boxes[a].overlaps(boxes[b]) || met.contains(&(a, b)) {
@@ -234,7 +237,11 @@ fn assert_apart(plant: &Plant, gap: f64, period: Option<f64>) {
         match (things[a], things[b]) {
             (Thing::Stem(m, i), Thing::Stem(n, j)) => {
                 let allowed = may_touch(&copies, (m, i), (n, j), at, gap);
-                assert!(allowed, "stems {i} and {j} touch at {at:?} (copies {m}, {n})");
+                assert!(
+                    allowed,
+                    "stems {i} and {j}, children of {:?} and {:?}, touch at {at:?} (copies {m}, {n})",
+                    plant.stems[i].parent, plant.stems[j].parent,
+                );
             }
             (Thing::Element(_, i), Thing::Element(_, j)) => {
                 // Opposite leaves may meet within the stem that they both grow from.
@@ -478,12 +485,18 @@ fn every_sample_keeps_its_promises() {
         let vine = |seed| generated("vine", &scene, &[], seed).unwrap();
         let artwork = vine(1);
         assert!(artwork.complete);
-        let [container] = &scene.containers[..] else { continue };
-        let outlines = container.outlines.iter().flat_map(|outline| contours(&outline.path));
-        let plant = Plant::read(&artwork);
-        let region = Region::new(outlines.collect()).unwrap();
-        assert_in_place(&plant, &region, 0.0, &[], 0.0);
-        assert_apart(&plant, 0.0, None);
+        let region = |container: &Container| {
+            Region::new(container.outlines.iter().flat_map(|outline| contours(&outline.path)).collect())
+        };
+        if let [container] = &scene.containers[..] {
+            let region = region(container).unwrap();
+            let repeats = container.overrides.get("repeat").is_some_and(|repeat| repeat == "true");
+            let plant = Plant::read(&artwork);
+            if !repeats {
+                assert_in_place(&plant, &region, 0.0, &[], 0.0);
+            }
+            assert_apart(&plant, 0.0, repeats.then(|| region.bounds().width()));
+        }
         let bytes = |artwork: &Artwork, seed| written(&document, artwork, ("vine", &[], seed)).to_bytes();
         assert!(bytes(&artwork, 1) == bytes(&vine(1), 1), "two runs differ");
         assert!(bytes(&artwork, 1) != bytes(&vine(2), 1), "the seed changes nothing");
