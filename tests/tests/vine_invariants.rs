@@ -48,10 +48,12 @@ impl Stem {
 struct Plant {
     stems: Vec<Stem>,
     elements: Vec<Piece>,
+    /// The main stems are an artist's, who may let them touch.
+    drawn: bool,
 }
 
 impl Plant {
-    fn read(artwork: &Artwork) -> Self {
+    fn read(artwork: &Artwork, drawn_stems: bool) -> Self {
         let open = |path: &BezPath| flatten(path, 0.004).into_iter().map(|subpath| subpath.points).collect();
         let lines: Vec<Piece> =
             artwork.group("spines").unwrap().items.iter().map(|item| open(&item.parts[0].path)).collect();
@@ -85,7 +87,7 @@ impl Plant {
             line: lines[i].clone(),
         };
         let stems: Vec<Stem> = (0..lines.len()).map(stem).collect();
-        Plant { stems, elements: pieces(artwork, "elements") }
+        Plant { stems, elements: pieces(artwork, "elements"), drawn: drawn_stems }
     }
 
     /// This and, if it repeats, the copy beside it.
@@ -93,6 +95,7 @@ impl Plant {
         let copy = |by: f64| Plant {
             stems: self.stems.iter().map(|stem| stem.moved(Vec2::new(by, 0.0))).collect(),
             elements: self.elements.iter().map(|element| moved(element, Vec2::new(by, 0.0))).collect(),
+            drawn: self.drawn,
         };
         [0.0].into_iter().chain(period).map(copy).collect()
     }
@@ -103,7 +106,8 @@ fn matched(lines: &[Piece], outlines: &[Piece]) -> Vec<usize> {
     let boxes: Vec<Rect> = outlines.iter().map(|outline| bounds(outline)).collect();
     let around = |(i, line): (usize, &Piece)| {
         let points: Vec<Point> = line.concat();
-        let samples: Vec<Point> = (1..8).map(|k| points[(points.len() - 1) * k / 8]).collect();
+        // Not the tip, which may be thinner than a chord is far from its curve.
+        let samples: Vec<Point> = (1..8).map(|k| points[(points.len() - 1) * k / 12]).collect();
         let share =
             |j: usize| samples.iter().filter(|&&p| boxes[j].contains(p) && covers(&outlines[j], p)).count();
         let best = (0..outlines.len()).max_by_key(|&j| share(j)).expect("an outline");
@@ -277,6 +281,9 @@ fn may_touch(copies: &[Plant], (m, i): (usize, usize), (n, j): (usize, usize), a
     let (a, b) = (&copies[m].stems[i], &copies[n].stems[j]);
     let near_fork =
         |child: &Stem| at.distance(child.start) <= 8.0 * (child.fork_width + gap) + 0.35 * child.length;
+    if copies[0].drawn && a.parent.is_none() && b.parent.is_none() {
+        return true;
+    }
     if i == j {
         let later = if m > n { a } else { b };
         return a.parent.is_none() && at.distance(later.start) < 2.0 * depth(&a.outline, a.line[0][1]);
@@ -431,9 +438,9 @@ proptest! {
         let svg = drawing(&format!("<path id='c' class='rinceau-container' fill-rule='evenodd' d='{outline}'/><circle class='rinceau-fixed' cx='{}' cy='{}' r='15'/>", fixed_at.0, fixed_at.1));
         let params = [looks, curves].concat();
         let (gap, edge) = (value(&params, "gap"), value(&params, "edge"));
-        if let Some((_, artwork)) = grown(&svg, &params, seed) {
+        if let Some((scene, artwork)) = grown(&svg, &params, seed) {
             let container = Region::new(contours(&BezPath::from_svg(&outline).unwrap())).unwrap();
-            let plant = Plant::read(&artwork);
+            let plant = Plant::read(&artwork, !scene.stems.is_empty());
             assert_in_place(&plant, &container, edge, &[disc(fixed_at, 15.0)], gap);
             assert_apart(&plant, gap, None);
         }
@@ -446,8 +453,8 @@ proptest! {
         let outline = blob((200.0, 200.0), 170.0, &outer);
         let svg = drawing(&format!("<path id='c' class='rinceau-container' d='{outline}'/>"));
         let params = [looks, curves, vec![("plait", "true".to_owned())]].concat();
-        if let Some((_, artwork)) = grown(&svg, &params, seed) {
-            let plant = Plant::read(&artwork);
+        if let Some((scene, artwork)) = grown(&svg, &params, seed) {
+            let plant = Plant::read(&artwork, !scene.stems.is_empty());
             let container = Region::new(contours(&BezPath::from_svg(&outline).unwrap())).unwrap();
             let gap = value(&params, "gap");
             assert_in_place(&plant, &container, value(&params, "edge"), &[], gap);
@@ -464,8 +471,8 @@ proptest! {
         let (width, height) = ((size.0 * 100.0).round() / 100.0, size.1);
         let svg = drawing(&format!("<rect id='c' class='rinceau-container' x='5' y='10' width='{width}' height='{height}'/><circle class='rinceau-fixed' cx='{}' cy='{}' r='8'/>", fixed_at.0, fixed_at.1));
         let params = [looks, curves, vec![("repeat", "true".to_owned())]].concat();
-        if let Some((_, artwork)) = grown(&svg, &params, seed) {
-            let plant = Plant::read(&artwork);
+        if let Some((scene, artwork)) = grown(&svg, &params, seed) {
+            let plant = Plant::read(&artwork, !scene.stems.is_empty());
             let band = Rect::new(5.0 - 3.0 * width, 10.0, 5.0 + 4.0 * width, 10.0 + height);
             let band = [(band.x0, band.y0), (band.x1, band.y0), (band.x1, band.y1), (band.x0, band.y1)];
             let container = Region::new(vec![band.map(Point::from).to_vec()]).unwrap();
@@ -491,7 +498,7 @@ fn every_sample_keeps_its_promises() {
         if let [container] = &scene.containers[..] {
             let region = region(container).unwrap();
             let repeats = container.overrides.get("repeat").is_some_and(|repeat| repeat == "true");
-            let plant = Plant::read(&artwork);
+            let plant = Plant::read(&artwork, !scene.stems.is_empty());
             if !repeats {
                 assert_in_place(&plant, &region, 0.0, &[], 0.0);
             }

@@ -8,7 +8,9 @@ use crate::geom::polyline::left_of;
 use crate::geom::region::Region;
 use crate::rng::Rng;
 use kurbo::{Affine, BezPath, Point, Rect, Shape};
+use rayon::prelude::*;
 use rinceau_format::{Document, Element, Error, Scene, Selection, Style};
+use std::collections::BTreeSet;
 
 const DRAWING: &str = include_str!("../../../samples/elements/vine.svg");
 
@@ -85,13 +87,7 @@ impl Art {
         let bounds = bounds_of(&contours);
         let samples = samples(&contours);
         let middle = bounds.center().to_vec2().hypot();
-        let names = element
-            .sets
-            .iter()
-            .chain([&element.kind, &element.symbol, &source.id])
-            .filter(|name| !name.is_empty())
-            .cloned()
-            .collect();
+        let names = names(element).map(str::to_owned).collect();
         Ok(Art {
             id: source.id.clone(),
             builtin,
@@ -130,9 +126,15 @@ impl Art {
     }
 }
 
+/// What an element may be called: its families, kind, symbol and id.
+fn names(element: &Element) -> impl Iterator<Item = &str> {
+    let own = [&element.kind, &element.symbol, &element.source.id];
+    element.sets.iter().chain(own).map(String::as_str).filter(|name| !name.is_empty())
+}
+
 /// What parts cover together, strokes included.
 fn silhouette(parts: &[(BezPath, Style)]) -> Vec<Contour> {
-    const TOLERANCE: f64 = 2e-3;
+    const TOLERANCE: f64 = 5e-3;
     let mut contours = Vec::new();
     for (path, style) in parts {
         let subpaths = flatten(path, TOLERANCE);
@@ -204,15 +206,22 @@ pub(super) struct Library {
 }
 
 impl Library {
-    /// Drawn elements with a kind or a symbol of clip art, and the built-in ones.
+    /// Drawn elements, and those built-in ones that any of the lists names: reading them all
+    /// would take longer than growing a small vine.
     ///
     /// Errors: a drawn element without a spine, or that covers nothing.
-    pub fn new(scene: &Scene) -> Result<Self, Error> {
+    pub fn new(scene: &Scene, lists: &[&str]) -> Result<Self, Error> {
         let mut arts =
             scene.elements.iter().map(|element| Art::new(element, false)).collect::<Result<Vec<_>, _>>()?;
-        let builtin = Document::from_bytes(DRAWING.as_bytes().to_vec())?.scene(&Selection::default())?;
-        for element in &builtin.elements {
-            arts.push(Art::new(element, true)?);
+        let split = |list: &&str| list.split([',', ' ']).map(str::to_owned).collect::<Vec<_>>();
+        let words: BTreeSet<String> = lists.iter().flat_map(split).collect();
+        let is_named = |element: &&Element| names(element).any(|name| words.contains(name));
+        if words.iter().any(|word| !matches!(word.as_str(), "" | "none" | "ball")) {
+            let drawing = Document::from_bytes(DRAWING.as_bytes().to_vec())?.scene(&Selection::default())?;
+            let named: Vec<&Element> = drawing.elements.iter().filter(is_named).collect();
+            let built: Result<Vec<Art>, Error> =
+                named.into_par_iter().map(|element| Art::new(element, true)).collect();
+            arts.extend(built?);
         }
         arts.push(ball());
         Ok(Library { arts })
@@ -238,14 +247,10 @@ impl Library {
         let own = of(false);
         let found = if own.is_empty() { of(true) } else { own };
         if found.is_empty() {
-            let mut known: Vec<&str> =
-                self.arts.iter().flat_map(|art| art.names.iter().map(String::as_str)).collect();
-            known.sort_unstable();
-            known.dedup();
             return Err(Error::new(
                 "no-element",
                 format!("No clip art is called '{name}'"),
-                format!("Use none, or one of {}", known.join(", ")),
+                "Use leaf, flower, bud, ball or none, a family (classic, meadow, ivy), or the id or kind of an element that you drew",
             ));
         }
         Ok(found)
@@ -286,7 +291,7 @@ mod tests {
 
     #[test]
     fn built_in_art_grows_from_its_origin() {
-        let library = Library::new(&Scene::default()).unwrap();
+        let library = Library::new(&Scene::default(), &["leaf flower,bud"]).unwrap();
         for kind in ["leaf", "flower", "bud"] {
             let choices = library.choices(kind, 1).unwrap();
             assert!(choices[0][0].len() >= 4, "{kind}");

@@ -60,10 +60,12 @@ pub fn generate(
     progress: &mut dyn Progress,
 ) -> Result<Artwork, Error> {
     progress.step("prepare", 0.0);
-    let overlay =
-        scene.containers.iter().map(|container| own_params(params, container).map(|own| own.overlay));
-    let shapes = Shapes::new(scene, &overlay.collect::<Result<Vec<_>, _>>()?)?;
-    let library = Library::new(scene)?;
+    let own = scene.containers.iter().map(|container| own_params(params, container));
+    let own = own.collect::<Result<Vec<Params>, Error>>()?;
+    let overlay: Vec<bool> = own.iter().map(|own| own.overlay).collect();
+    let shapes = Shapes::new(scene, &overlay)?;
+    let lists: Vec<&str> = own.iter().flat_map(|own| [own.forks.as_str(), own.tips.as_str()]).collect();
+    let library = Library::new(scene, &lists)?;
     let mut layers = Layers::new(scene);
     let mut warnings = scene.warnings.clone();
     let mut counts = BTreeMap::new();
@@ -82,7 +84,7 @@ pub fn generate(
             used: &mut used,
             drawn: false,
         };
-        match one.grow(params, &mut rng.fork(), &mut layers, &mut counts, progress)? {
+        match one.grow(&own[index], &mut rng.fork(), &mut layers, &mut counts, progress)? {
             Some(finished) => complete &= finished,
             None => warnings.push(format!(
                 "The container '{}' is too small or too thin for anything to grow, or lies under another",
@@ -157,17 +159,16 @@ impl Container<'_> {
         progress: &mut dyn Progress,
     ) -> Result<Option<bool>, Error> {
         let container = &self.scene.containers[self.index];
-        let params = own_params(params, container)?;
         let charge = Charge::from_param(&params.charge)?;
         let forks = self.library.choices(&params.forks, params.levels)?;
         let tips = self.library.choices(&params.tips, params.levels)?;
         progress.step("cells", 0.0);
         let Some(rough) = self.rough_cells() else { return Ok(None) };
         let inradius = rough.inradius();
-        let sizes = Sizes::new(&params, self.shapes.areas[self.index], inradius, self.scene.px_per_unit);
-        let Some(cells) = self.cells(&params, &sizes) else { return Ok(None) };
+        let sizes = Sizes::new(params, self.shapes.areas[self.index], inradius, self.scene.px_per_unit);
+        let Some(cells) = self.cells(params, &sizes) else { return Ok(None) };
         let mut plant =
-            Plant::new((&params, &sizes), (self.library, &charge), (forks, tips), cells, rng.fork());
+            Plant::new((params, &sizes), (self.library, &charge), (forks, tips), cells, rng.fork());
         progress.step("stem", 0.0);
         self.start(&mut plant, &rough, rng);
         let mut finished = true;
