@@ -82,7 +82,7 @@ pub fn generate(
             library: &library,
             stems: &stems,
             used: &mut used,
-            drawn: false,
+            planned: false,
         };
         match one.grow(&own[index], &mut rng.fork(), &mut layers, &mut counts, progress)? {
             Some(finished) => complete &= finished,
@@ -113,7 +113,7 @@ fn own_params(params: &Params, container: &rinceau_format::Container) -> Result<
 /// Errors: one lies outside every container.
 fn stems_cut(stems: &[&Guide], used: &[f64]) -> Result<Vec<String>, Error> {
     // The ends of a stem may touch the edge that is kept free.
-    const MOST: f64 = 0.9;
+    const MOST: f64 = 0.8;
     let mut warnings = Vec::new();
     for (stem, &used) in stems.iter().zip(used) {
         let name = &stem.source.id;
@@ -144,8 +144,8 @@ struct Container<'a> {
     stems: &'a [&'a Guide],
     /// How much of each drawn stem any container uses.
     used: &'a mut [f64],
-    /// True if its stems were drawn: then no others start.
-    drawn: bool,
+    /// True if the artist says where its stems start: then no others do.
+    planned: bool,
 }
 
 impl Container<'_> {
@@ -163,20 +163,19 @@ impl Container<'_> {
         let forks = self.library.choices(&params.forks, params.levels)?;
         let tips = self.library.choices(&params.tips, params.levels)?;
         progress.step("cells", 0.0);
-        let Some(rough) = self.rough_cells() else { return Ok(None) };
-        let inradius = rough.inradius();
+        let Some((rough, inradius)) = self.rough_cells() else { return Ok(None) };
         let sizes = Sizes::new(params, self.shapes.areas[self.index], inradius, self.scene.px_per_unit);
         let Some(cells) = self.cells(params, &sizes) else { return Ok(None) };
         let mut plant =
             Plant::new((params, &sizes), (self.library, &charge), (forks, tips), cells, rng.fork());
         progress.step("stem", 0.0);
-        self.start(&mut plant, &rough, rng);
+        self.start(&mut plant, (&rough, inradius), rng);
         let mut finished = true;
         // Where a large place stays empty another stem starts, smaller as the place is.
         for _ in 0..MOST_STARTS {
             progress.step("branches", 0.0);
             finished &= plant.branch(MOST_STEMS, |done| progress.step("branches", done));
-            if !finished || self.drawn || params.repeat {
+            if !finished || self.planned || params.repeat {
                 break;
             }
             progress.step("stem", 0.0);
@@ -196,12 +195,15 @@ impl Container<'_> {
         Ok(Some(finished))
     }
 
-    /// A few cells, for a first look. `None` if there is no inside.
-    fn rough_cells(&self) -> Option<Cells> {
+    /// A few cells, for a first look, and the radius of the largest circle in them. `None` if
+    /// there is no inside.
+    fn rough_cells(&self) -> Option<(Cells, f64)> {
         const CELLS: f64 = 4e4;
         let region = self.shapes.free(self.index, 0.0, 0.0)?;
         let size = Cells::size_for(region.bounds().area(), 0.0, CELLS);
-        Some(Cells::new(&region, size, None)).filter(|cells| cells.inradius() > 0.0)
+        let cells = Cells::new(&region, size, None);
+        let inradius = cells.inradius();
+        (inradius > 0.0).then_some((cells, inradius))
     }
 
     /// The free cells.
@@ -216,9 +218,8 @@ impl Container<'_> {
 
     /// Plants the main stems: those that were drawn, or from the seeds, or one that starts by
     /// itself.
-    fn start(&mut self, plant: &mut Plant, rough: &Cells, rng: &mut Rng) {
+    fn start(&mut self, plant: &mut Plant, (rough, inradius): (&Cells, f64), rng: &mut Rng) {
         let repeat = plant.params.repeat;
-        let inradius = rough.inradius();
         let taper = plant.taper(plant.sizes.width);
         let mut drawn: Vec<Stem> = Vec::new();
         for (stem, used) in self.stems.iter().zip(&mut *self.used) {
@@ -231,7 +232,7 @@ impl Container<'_> {
         let seeds =
             self.scene.seeds.iter().map(|seed| seed.at).filter(|&at| plant.cells.owner(at) == Owner::FREE);
         let mut seeds: Vec<Option<Point>> = seeds.map(Some).collect();
-        self.drawn = !drawn.is_empty();
+        self.planned = !drawn.is_empty() || !seeds.is_empty() || plant.params.stem == "curl";
         if drawn.is_empty() && seeds.is_empty() {
             if repeat {
                 drawn.extend(start::wave(plant, self.shapes.span(self.index), inradius));
@@ -256,9 +257,9 @@ impl Container<'_> {
         for seed in seeds {
             let longest = plant.sizes.length[0];
             let stem = if plant.params.stem == "curl" {
-                start::curl(plant, seed, longest)
+                start::curl(plant, rough, seed, longest)
             } else {
-                start::wander(plant, rough, seed, rng).or_else(|| start::curl(plant, seed, longest))
+                start::wander(plant, rough, seed, rng).or_else(|| start::curl(plant, rough, seed, longest))
             };
             if let Some(stem) = stem {
                 plant.add_main(stem);

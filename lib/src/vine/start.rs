@@ -69,11 +69,11 @@ fn nodes(cubics: &[CubicBez]) -> Vec<Node> {
 }
 
 /// One curl from a place (or from the bottom of the shape) upwards, as long as fits.
-pub(super) fn curl(plant: &Plant, seed: Option<Point>, longest: f64) -> Option<Stem> {
+pub(super) fn curl(plant: &Plant, rough: &Cells, seed: Option<Point>, longest: f64) -> Option<Stem> {
     let side = if plant.params.curl == "right" { 1.0 } else { -1.0 };
     let starts: Vec<Point> = match seed {
         Some(at) => vec![at],
-        None => bottom(&plant.cells, plant.sizes.width),
+        None => bottom(rough, plant.sizes.edge + plant.sizes.width),
     };
     let form = plant.form(0);
     let taper = plant.taper(plant.sizes.width);
@@ -95,9 +95,9 @@ pub(super) fn curl(plant: &Plant, seed: Option<Point>, longest: f64) -> Option<S
 }
 
 /// Places along the bottom of the free cells, from the middle outwards.
-fn bottom(cells: &Cells, width: f64) -> Vec<Point> {
+fn bottom(cells: &Cells, from_wall: f64) -> Vec<Point> {
     let (clear, _) = cells.clearances();
-    let need = (width / cells.size()).powi(2);
+    let need = (from_wall / cells.size()).powi(2);
     let free: Vec<Point> = (0..clear.len()).filter(|&i| clear[i] > need).map(|i| cells.middle(i)).collect();
     let Some(&first) = free.first() else { return Vec::new() };
     let bounds = free.iter().fold(Rect::from_points(first, first), |bounds, &p| bounds.union_pt(p));
