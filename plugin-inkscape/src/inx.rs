@@ -148,7 +148,8 @@ fn dialog(generator: &Generator, binary: &str) -> String {
                 ("0", "99999", "1"),
                 false,
             );
-        } else {
+        }
+        if page == Page::More {
             number(
                 &mut inx,
                 "time-limit",

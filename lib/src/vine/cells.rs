@@ -229,6 +229,11 @@ impl Cells {
         (unframed, self.grid.columns)
     }
 
+    /// Width of what repeats sideways.
+    pub fn period(&self) -> Option<f64> {
+        (self.grid.wrap > 0).then_some(self.grid.wrap as f64 * self.grid.size)
+    }
+
     /// Radius of the largest circle that is free.
     pub fn inradius(&self) -> f64 {
         self.clearances().0.into_iter().fold(0.0, f64::max).sqrt() * self.grid.size

@@ -200,6 +200,9 @@ fn samples(contours: &[Contour]) -> Vec<(Point, f64)> {
     samples
 }
 
+/// For each level some names, and for each name the templates it means.
+pub(super) type Choices = Vec<Vec<Vec<usize>>>;
+
 /// Every template, and which are asked for at each level.
 pub(super) struct Library {
     pub arts: Vec<Art>,
@@ -230,11 +233,11 @@ impl Library {
     /// What a list of names means at each of some levels. A name written twice counts twice.
     ///
     /// Errors: a name that means nothing.
-    pub fn choices(&self, names: &str, levels: usize) -> Result<Vec<Vec<Vec<usize>>>, Error> {
+    pub fn choices(&self, names: &str, levels: usize) -> Result<Choices, Error> {
         let mut lists = names.split(',').map(|list| {
             list.split_whitespace().filter(|&name| name != "none").map(|name| self.named(name)).collect()
         });
-        let lists: Vec<Vec<Vec<usize>>> = lists.by_ref().collect::<Result<_, _>>()?;
+        let lists: Choices = lists.by_ref().collect::<Result<_, _>>()?;
         Ok((0..levels).map(|level| lists[level.min(lists.len() - 1)].clone()).collect())
     }
 

@@ -15,7 +15,7 @@
 //! ends here. Clip art leans away from the stem instead of lying along it.
 
 use super::cells::{Cells, Owner};
-use super::clip_art::{Library, PlacedArt, pick};
+use super::clip_art::{Choices, Library, PlacedArt, pick};
 use super::params::{Params, Sizes, of_level};
 use super::particle::{Charge, Form, Law, Node, follow, unit};
 use super::plait::{self, Crossing};
@@ -40,6 +40,8 @@ pub(super) struct Plant<'a> {
     pub sizes: &'a Sizes,
     library: &'a Library,
     pub cells: Cells,
+    /// Width of what repeats sideways.
+    pub period: Option<f64>,
     forms: Vec<Form>,
     charge: &'a Charge,
     pub stems: Vec<Stem>,
@@ -50,10 +52,12 @@ pub(super) struct Plant<'a> {
     ids: Vec<u32>,
     /// Where branches cross.
     pub crossings: Vec<Crossing>,
+    /// Where clip art is attached to each stem: the arc length there, and its size.
+    attached: Vec<Vec<(f64, f64)>>,
     /// How many stems have had their branches.
     grown: usize,
-    forks: Vec<Vec<Vec<usize>>>,
-    tips: Vec<Vec<Vec<usize>>>,
+    forks: Choices,
+    tips: Choices,
     rng: Rng,
     noise: Vec<(Vec2, f64)>,
 }
@@ -113,7 +117,7 @@ impl<'a> Plant<'a> {
     pub fn new(
         (params, sizes): (&'a Params, &'a Sizes),
         (library, charge): (&'a Library, &'a Charge),
-        (forks, tips): (Vec<Vec<Vec<usize>>>, Vec<Vec<Vec<usize>>>),
+        (forks, tips): (Choices, Choices),
         cells: Cells,
         mut rng: Rng,
     ) -> Self {
@@ -135,6 +139,7 @@ impl<'a> Plant<'a> {
             params,
             sizes,
             library,
+            period: cells.period(),
             cells,
             forms: (0..params.levels).map(form).collect(),
             charge,
@@ -143,6 +148,7 @@ impl<'a> Plant<'a> {
             things: 0,
             ids: Vec::new(),
             crossings: Vec::new(),
+            attached: Vec::new(),
             grown: 0,
             forks,
             tips,
@@ -157,6 +163,7 @@ impl<'a> Plant<'a> {
         let id = self.things;
         self.things += 1;
         self.ids.push(id);
+        self.attached.push(Vec::new());
         // A curl ends where it gets tighter than it is wide.
         let tight = stem.nodes.iter().find(|node| node.curvature.abs() * stem.width(node.s) > 1.3);
         stem.end = tight.map_or(stem.length(), |node| node.s).max(0.5 * stem.length());
@@ -212,7 +219,14 @@ impl<'a> Plant<'a> {
             let close = |&(s, side): &(f64, f64)| {
                 (s - site.s).abs() < if side == site.side { 2.0 * apart } else { 0.5 * apart }
             };
-            if taken.len() >= limit || taken.iter().any(close) || self.is_near_crossing(site.parent, site.s) {
+            // Nor where the base of a leaf lies within the stem.
+            let (width, gap) = (stem.width(site.s), self.sizes.gap);
+            let at_base = |&(s, size): &(f64, f64)| (s - site.s).abs() < 0.4 * size + width + gap;
+            if taken.len() >= limit
+                || taken.iter().any(close)
+                || self.is_near_crossing(site.parent, site.s)
+                || self.attached[site.parent].iter().any(at_base)
+            {
                 continue;
             }
             // What a look rules out needs no turn of its own.
@@ -334,6 +348,10 @@ impl<'a> Plant<'a> {
     fn parts_from_parent(&self, branch: &Stem, length: f64) -> bool {
         const SHARE: f64 = 0.36;
         const APART: f64 = 0.1;
+        // Nor may it meet its own copies in what repeats.
+        if self.period.is_some_and(|period| branch.span() + self.sizes.gap >= period) {
+            return false;
+        }
         let Some((parent, s)) = branch.parent else { return true };
         let at = branch.at(SHARE * length).p;
         let near = |node: &&Node| (node.s - s).abs() < length;
@@ -440,9 +458,7 @@ impl<'a> Plant<'a> {
                 continue;
             }
             // A curl ends where it gets tighter than it is wide.
-            if node.s > 0.5 * length && node.curvature.abs() * 2.0 * half > 1.3 {
-                break;
-            }
+            let is_end = node.s > 0.5 * length && node.curvature.abs() * 2.0 * half > 1.3;
             let (mut at_parent, mut at_other) = (false, None);
             let apart = node.s - before;
             let free = self.cells.allows(node.p, half, apart, |owner, place| {
@@ -483,13 +499,16 @@ impl<'a> Plant<'a> {
             crossing = at_other.is_some();
             before = node.s;
             next = node.s + 0.9 * size.max(0.5 * half);
+            if is_end {
+                break;
+            }
         }
         (left && !crossing).then_some(met)
     }
 
     /// True if a place on a stem is too near a crossing for anything to grow there.
     fn is_near_crossing(&self, stem: usize, s: f64) -> bool {
-        let apart = 2.0 * (self.stems[stem].width(s) + self.sizes.gap) + self.sizes.width;
+        let apart = 3.0 * (self.stems[stem].width(s) + 2.0 * self.sizes.gap + self.sizes.width);
         self.crossings
             .iter()
             .flat_map(|crossing| crossing.at)
@@ -540,7 +559,13 @@ impl<'a> Plant<'a> {
             };
             let forks = self.stems.iter().filter_map(|stem| stem.parent);
             let near_fork = |(parent, s): (usize, f64)| parent == met.stem && (s - place).abs() < apart;
-            if close(met.stem, place) || close(index, s) || forks.into_iter().any(near_fork) || s < apart {
+            let holds = |&(at, _): &(f64, f64)| (at - place).abs() < apart;
+            if self.attached[met.stem].iter().any(holds)
+                || close(met.stem, place)
+                || close(index, s)
+                || forks.into_iter().any(near_fork)
+                || s < apart
+            {
                 return None;
             }
             crossings.push(Crossing { at: [(index, s), (met.stem, place)] });
@@ -609,6 +634,7 @@ impl<'a> Plant<'a> {
                     self.stems[stem].end =
                         self.own_end(stem, end, tip.p, 0.4 * radius).min(end).max(crossed.min(end));
                     self.place(art, pose, size);
+                    self.attached[stem].push((end, size));
                     return;
                 }
             }
@@ -643,14 +669,26 @@ impl<'a> Plant<'a> {
         }
         const SCALES: [f64; 5] = [1.0, 0.8, 0.64, 0.5, 0.4];
         let mut sites: Vec<Beside> = Vec::new();
+        let mut forks: Vec<Vec<(f64, f64)>> = vec![Vec::new(); self.stems.len()];
+        for stem in &self.stems {
+            if let Some((parent, s)) = stem.parent {
+                forks[parent].push((s, stem.side));
+            }
+        }
         for (index, stem) in self.stems.iter().enumerate() {
             let step = (0.7 * self.art_size(stem.level)).max(2.0 * self.sizes.gap) / wanted;
             let count = (stem.end / step).ceil().max(1.0);
             for i in 0..count as usize {
                 let s = (i as f64 + 0.6) / count * stem.end;
-                if s <= stem.end && !self.is_near_crossing(index, s) {
-                    sites.extend([1.0, -1.0].map(|side| self.beside(index, s, side)));
+                if s > stem.end || self.is_near_crossing(index, s) {
+                    continue;
                 }
+                // Where a branch leaves, its edge and a leaf's base would lie over each other.
+                let near = 1.5 * (stem.width(s) + self.sizes.gap);
+                let forks =
+                    |side: f64| forks[index].iter().any(|&(at, own)| own == side && (at - s).abs() < near);
+                let free = [1.0, -1.0].into_iter().filter(|&side| !forks(side));
+                sites.extend(free.map(|side| self.beside(index, s, side)));
             }
         }
         // Places near each other one after the other, as memory likes it.
@@ -719,19 +757,22 @@ impl<'a> Plant<'a> {
         while scale >= least {
             let size = size * scale;
             // From within the stem, so that no light falls between.
-            let origin = node.p + side * (0.5 * width - 0.06 * size).max(0.0) * left_of(node.along);
+            let attached = node.p + side * (0.5 * width - 0.06 * size).max(0.0) * left_of(node.along);
+            let (radius, central) = (self.library.arts[art].radius, self.library.arts[art].central);
             let base = 0.5 * width + 0.26 * size;
             for lean in LEAN {
                 // A look along its middle first.
                 const LOOKS: [f64; 3] = [1.05, 0.75, 0.45];
                 let along = rotated(node.along, side * lean);
-                let taken = |&share: &f64| self.cells.owner(origin + share * size * along) != Owner::FREE;
+                // A flower sits beside the stem, not on it.
+                let origin = if central { attached + 0.96 * radius * size * along } else { attached };
+                let taken = |&share: &f64| self.cells.owner(attached + share * size * along) != Owner::FREE;
                 if LOOKS.iter().any(taken) {
                     continue;
                 }
                 let pose = posed(origin, along, size, side < 0.0);
                 let may = |at: Point, owner: Owner, place: f64| {
-                    let distance = at.distance(origin);
+                    let distance = at.distance(attached);
                     let own = owner.id() == Some(id) && (place - node.s).abs() < 0.5 * size + 2.0 * near;
                     let sibling = branch.is_some() && owner.id() == branch;
                     (own && (distance < base || !owner.is_body()) && distance < 3.0 * near)
@@ -739,6 +780,7 @@ impl<'a> Plant<'a> {
                 };
                 if self.library.arts[art].fits(pose, size, &self.cells, may) {
                     self.place(art, pose, size);
+                    self.attached[stem].push((node.s, size));
                     return true;
                 }
             }

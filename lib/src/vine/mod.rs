@@ -28,6 +28,7 @@ mod stem;
 
 pub use params::Params;
 
+use crate::geom::region::Region;
 use crate::progress::Progress;
 use crate::rng::Rng;
 use crate::shapes::Shapes;
@@ -44,6 +45,8 @@ use stem::Stem;
 
 /// Stems of one container at most.
 pub const MOST_STEMS: usize = 60_000;
+/// Nodes of a drawn stem at most.
+pub const MOST_NODES: usize = 2000;
 /// Main stems of one container that start by themselves, at most.
 const MOST_STARTS: usize = 12;
 /// Cells of one container at most; with more the same ornament takes longer and no other shape.
@@ -66,6 +69,7 @@ pub fn generate(
     let shapes = Shapes::new(scene, &overlay)?;
     let lists: Vec<&str> = own.iter().flat_map(|own| [own.forks.as_str(), own.tips.as_str()]).collect();
     let library = Library::new(scene, &lists)?;
+    check_seeds(scene, &shapes)?;
     let mut layers = Layers::new(scene);
     let mut warnings = scene.warnings.clone();
     let mut counts = BTreeMap::new();
@@ -74,7 +78,7 @@ pub fn generate(
     let stems: Vec<&Guide> =
         scene.stems.iter().chain(scene.guides.iter().filter(|path| !path.marked)).collect();
     let mut used = vec![0.0; stems.len()];
-    for index in 0..scene.containers.len() {
+    for (index, own) in own.iter().enumerate() {
         let mut one = Container {
             scene,
             shapes: &shapes,
@@ -84,7 +88,7 @@ pub fn generate(
             used: &mut used,
             planned: false,
         };
-        match one.grow(&own[index], &mut rng.fork(), &mut layers, &mut counts, progress)? {
+        match one.grow(own, &mut rng.fork(), &mut layers, &mut counts, progress)? {
             Some(finished) => complete &= finished,
             None => warnings.push(format!(
                 "The container '{}' is too small or too thin for anything to grow, or lies under another",
@@ -100,6 +104,20 @@ pub fn generate(
     }
     let (groups, symbols) = layers.into_parts();
     Ok(Artwork { symbols, groups, complete, warnings, counts, decimals: shapes.decimals() })
+}
+
+/// Errors on a seed outside every container.
+fn check_seeds(scene: &Scene, shapes: &Shapes) -> Result<(), Error> {
+    let regions: Vec<Region> =
+        shapes.containers.iter().filter_map(|shape| Region::new(shape.clone())).collect();
+    match scene.seeds.iter().find(|seed| !regions.iter().any(|region| region.contains(seed.at))) {
+        None => Ok(()),
+        Some(seed) => Err(seed.source.error(
+            "seed-outside",
+            format!("The seed '{}' is outside every container", seed.source.id),
+            "Move it into the shape where a vine should start, or clear its mark",
+        )),
+    }
 }
 
 /// The parameters of a container, its own wishes included.
@@ -159,7 +177,10 @@ impl Container<'_> {
         progress: &mut dyn Progress,
     ) -> Result<Option<bool>, Error> {
         let container = &self.scene.containers[self.index];
-        let charge = Charge::from_param(&params.charge)?;
+        let at = |error: Error| error.at(container.source.at);
+        let own = container.overrides.contains_key("charge");
+        let charge =
+            Charge::from_param(&params.charge).map_err(|error| if own { at(error) } else { error })?;
         let forks = self.library.choices(&params.forks, params.levels)?;
         let tips = self.library.choices(&params.tips, params.levels)?;
         progress.step("cells", 0.0);
@@ -169,7 +190,7 @@ impl Container<'_> {
         let mut plant =
             Plant::new((params, &sizes), (self.library, &charge), (forks, tips), cells, rng.fork());
         progress.step("stem", 0.0);
-        self.start(&mut plant, (&rough, inradius), rng);
+        self.start(&mut plant, (&rough, inradius), rng)?;
         let mut finished = true;
         // Where a large place stays empty another stem starts, smaller as the place is.
         for _ in 0..MOST_STARTS {
@@ -218,11 +239,20 @@ impl Container<'_> {
 
     /// Plants the main stems: those that were drawn, or from the seeds, or one that starts by
     /// itself.
-    fn start(&mut self, plant: &mut Plant, (rough, inradius): (&Cells, f64), rng: &mut Rng) {
+    fn start(
+        &mut self,
+        plant: &mut Plant,
+        (rough, inradius): (&Cells, f64),
+        rng: &mut Rng,
+    ) -> Result<(), Error> {
         let repeat = plant.params.repeat;
         let taper = plant.taper(plant.sizes.width);
         let mut drawn: Vec<Stem> = Vec::new();
         for (stem, used) in self.stems.iter().zip(&mut *self.used) {
+            if stem.path.elements().len() > MOST_NODES {
+                let sentence = format!("The stem '{}' has more than {MOST_NODES} nodes", stem.source.id);
+                return Err(stem.source.error("too-many-nodes", sentence, "Simplify it (Path > Simplify)"));
+            }
             for whole in start::drawn(&stem.path, taper) {
                 let part = start::part_inside(&plant.cells, &whole);
                 *used = used.max(part.as_ref().map_or(0.0, |part| part.length() / whole.length()));
@@ -265,5 +295,6 @@ impl Container<'_> {
                 plant.add_main(stem);
             }
         }
+        Ok(())
     }
 }

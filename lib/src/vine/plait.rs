@@ -71,7 +71,11 @@ pub(super) fn cut(stems: &mut [Stem], crossings: &[Crossing], gap: f64) {
         let ((over, s_over), (under, s_under)) = (crossing.at[upper], crossing.at[1 - upper]);
         let (above, below) = (stems[over].at(s_over), stems[under].at(s_under));
         let sine = below.along.cross(above.along);
-        let half = (stems[over].width(s_over) / 2.0 + gap) / sine.abs().max(0.1);
+        let slant = sine.abs().max(0.1);
+        // The ends of the cut are straight; where the stems bend they need that much more room.
+        let across = stems[under].width(s_under) / (2.0 * slant);
+        let bow = across * across / 2.0 * (above.curvature.abs() + below.curvature.abs());
+        let half = (stems[over].width(s_over) / 2.0 + gap + bow) / slant;
         let skew = below.along.dot(above.along) / if sine == 0.0 { 1.0 } else { sine };
         stems[under].cuts.push(Cut { from: s_under - half, to: s_under + half, skew });
     }

@@ -11,26 +11,36 @@ use super::grow::{Plant, Pose};
 use super::particle::{Node, unit};
 use super::stem::{Stem, Taper};
 use crate::geom::catmull_rom;
+use crate::geom::flatten::start_tangent;
 use crate::rng::Rng;
 use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveCurvature, ParamCurveDeriv, PathEl, Point, Rect, Vec2};
 
 /// Particles that are tried.
 const TRIES: usize = 120;
 
-/// A stem through the nodes of a drawn path. `None` for a path of one point.
+/// Stems along a drawn path: a path of straight lines becomes a smooth curve through its nodes
+/// (M-018); one that the artist has curved is followed as drawn, through the same nodes.
 pub(super) fn drawn(path: &BezPath, taper: Taper) -> Vec<Stem> {
-    let mut subpaths: Vec<(Vec<Point>, bool)> = Vec::new();
+    let mut subpaths: Vec<BezPath> = Vec::new();
     for el in path.elements() {
-        match (el, subpaths.last_mut()) {
-            (PathEl::MoveTo(p), _) => subpaths.push((vec![*p], false)),
-            (PathEl::ClosePath, Some(last)) => last.1 = true,
-            (el, Some(last)) => last.0.extend(el.end_point()),
-            _ => {}
+        if matches!(el, PathEl::MoveTo(_)) {
+            subpaths.push(BezPath::new());
+        }
+        if let Some(last) = subpaths.last_mut() {
+            last.push(*el);
         }
     }
-    let stem = |(points, closed): (Vec<Point>, bool)| {
-        let nodes = nodes(&catmull_rom::through(&points, closed));
-        let stem = Stem::new(0, None, 1.0, nodes, taper);
+    let stem = |subpath: BezPath| {
+        let curved =
+            subpath.elements().iter().any(|el| matches!(el, PathEl::CurveTo(..) | PathEl::QuadTo(..)));
+        let cubics: Vec<CubicBez> = if curved {
+            subpath.segments().map(|segment| segment.to_cubic()).collect()
+        } else {
+            let closed = subpath.elements().iter().any(|el| matches!(el, PathEl::ClosePath));
+            let points: Vec<Point> = subpath.elements().iter().filter_map(PathEl::end_point).collect();
+            catmull_rom::through(&points, closed)
+        };
+        let stem = Stem::new(0, None, 1.0, nodes(&cubics), taper);
         (stem.end > 0.0).then_some(stem)
     };
     subpaths.into_iter().filter_map(stem).collect()
@@ -48,7 +58,10 @@ fn nodes(cubics: &[CubicBez]) -> Vec<Node> {
             let d = deriv.eval(t).to_vec2();
             let p = cubic.eval(t);
             let Some(last) = nodes.last() else {
-                nodes.push(Node { s, p, along: d.normalize(), curvature: cubic.curvature(t) });
+                // A handle may lie on its node.
+                let along = start_tangent((*cubic).into());
+                let curvature = if d.hypot() > 0.0 { cubic.curvature(t) } else { 0.0 };
+                nodes.push(Node { s, p, along, curvature });
                 continue;
             };
             if k == 0 || d.hypot() == 0.0 {
@@ -232,7 +245,8 @@ pub(super) fn wander(plant: &Plant, rough: &Cells, seed: Option<Point>, rng: &mu
     }
     let (_, nodes) = best?;
     let taper = Taper { start: width, tip: 0.34 * width, power: plant.params.taper.max(1e-3) };
-    Some(curled(plant, Stem::new(0, None, 1.0, nodes, taper), 5.0 * inradius))
+    let stem = free_part(plant, Stem::new(0, None, 1.0, nodes, taper))?;
+    Some(curled(plant, stem, 5.0 * inradius))
 }
 
 /// Runs one particle, which ends where it comes `nearest` to a wall; what it comes near, less
@@ -282,6 +296,32 @@ fn particle(country: &Country, at: Point, reach: f64, nearest: f64, rng: &mut Rn
     (new as f64 / country.squares.max(1) as f64 - 0.006 * bending * reach, nodes)
 }
 
+/// The start of a stem up to where it would touch something: the rough cells that it found its
+/// way through do not know exactly.
+fn free_part(plant: &Plant, stem: Stem) -> Option<Stem> {
+    const SHORTEST: f64 = 6.0;
+    let cells = &plant.cells;
+    let step = cells.size();
+    let count = (stem.length() / step) as usize;
+    let is_free = |k: &usize| {
+        let s = *k as f64 * step;
+        cells.allows(stem.at(s).p, stem.width(s) / 2.0, step, |_, _| false)
+    };
+    let first = (0..=count).find(is_free)?;
+    let last = (first..=count).take_while(is_free).last()?;
+    let (from, to) = (first as f64 * step, (last as f64 * step).min(stem.length()));
+    if to - from < SHORTEST * stem.taper.start {
+        return None;
+    }
+    let nodes = stem.between(from, to).into_iter().map(|node| Node { s: node.s - from, ..node });
+    Some(Stem::new(0, None, stem.side, nodes.collect(), stem.taper)).filter(|stem| fits_period(plant, stem))
+}
+
+/// True unless a stem would meet its own copies in what repeats.
+fn fits_period(plant: &Plant, stem: &Stem) -> bool {
+    plant.period.is_none_or(|period| stem.span() + plant.sizes.gap < period)
+}
+
 /// Lets a stem go over into the largest curl that fits near its end.
 fn curled(plant: &Plant, stem: Stem, longest: f64) -> Stem {
     let full = stem.length();
@@ -307,7 +347,9 @@ fn curled(plant: &Plant, stem: Stem, longest: f64) -> Stem {
                     })
                 };
                 let free = form.nodes.iter().step_by(3).all(|node| apart(&pose.node(node)));
-                if free && plant.way(nodes, form.length() * length, &taper, None).is_some() {
+                let crosses_nothing = |met: Vec<super::grow::Met>| met.is_empty();
+                if free && plant.way(nodes, form.length() * length, &taper, None).is_some_and(crosses_nothing)
+                {
                     // A longer curl is worth some of the way.
                     let score = length - 0.8 * (full - s);
                     if best.is_none_or(|(other, ..)| score > other) {
@@ -326,7 +368,13 @@ fn curled(plant: &Plant, stem: Stem, longest: f64) -> Stem {
         let node = pose.node(node);
         Node { s: node.s + s, ..node }
     }));
-    Stem::new(0, None, side, nodes, stem.taper)
+    // The way to the curl is wider now than when it was tried: the whole is longer.
+    let curled = Stem::new(0, None, side, nodes, stem.taper);
+    let length = curled.length();
+    match free_part(plant, curled) {
+        Some(whole) if whole.length() > 0.9 * length => whole,
+        _ => stem,
+    }
 }
 
 /// Width of the stem that another starts on.

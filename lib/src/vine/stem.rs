@@ -31,7 +31,8 @@ impl Taper {
 
     /// Change of the width by the share.
     fn slope(&self, share: f64) -> f64 {
-        let left = (1.0 - share).clamp(1e-6, 1.0);
+        // A power below 1 falls off a cliff at the tip; an outline cannot follow it there.
+        let left = (1.0 - share).clamp(0.05, 1.0);
         -(self.start - self.tip) * self.power * libm::pow(left, self.power - 1.0)
     }
 }
@@ -78,6 +79,12 @@ impl Stem {
     /// Arc length in all.
     pub fn length(&self) -> f64 {
         self.nodes.last().map_or(0.0, |node| node.s)
+    }
+
+    /// How far it reaches from left to right, its width included.
+    pub fn span(&self) -> f64 {
+        let xs = || self.nodes.iter().map(|node| node.p.x);
+        xs().fold(f64::NEG_INFINITY, f64::max) - xs().fold(f64::INFINITY, f64::min) + self.taper.start
     }
 
     /// Width at an arc length.
