@@ -602,7 +602,7 @@ mod vines {
     fn with_what_a_container_misspells() {
         insta::assert_snapshot!(vine(svg(&CIRCLE.replace("/>", " rinceau:turn=\"1\"/>"))).refusal(), @"2:1: There is no parameter 'turn'. Use one of levels, stem-width, turns, forks, tips, palette, length, branches, alpha, leaves, clip-art, gap, edge, taper, tip-width, stem, curl, places, rule, charge, field, integrator, stems, copies, overlay, plait, repeat. [unknown-parameter]");
         insta::assert_snapshot!(vine(svg(&CIRCLE.replace("/>", " rinceau:turns=\"1,x\"/>"))).refusal(), @"2:1: turns cannot be '1,x'. Give numbers from 0 to 8 with commas between. [bad-parameter]");
-        insta::assert_snapshot!(vine(svg(&CIRCLE.replace("/>", " rinceau:charge=\"banana\"/>"))).refusal(), @"charge cannot be 'banana'. Give power, constant, sine, triangle, or 2 to 64 numbers with spaces between, such as '1 -1 2'. [bad-charge]");
+        insta::assert_snapshot!(vine(svg(&CIRCLE.replace("/>", " rinceau:charge=\"banana\"/>"))).refusal(), @"2:1: charge cannot be 'banana'. Give power, constant, sine, triangle, or 2 to 64 numbers with spaces between, such as '1 -1 2'. [bad-charge]");
     }
 
     #[test]

@@ -646,9 +646,20 @@ impl<'a> Plant<'a> {
     fn own_end(&self, stem: usize, end: f64, at: Point, radius: f64) -> f64 {
         let stem = &self.stems[stem];
         let outside = |node: &&Node| node.s <= end && node.p.distance(at) > radius;
-        let last = stem.nodes.iter().rev().find(outside).map_or(0.0, |node| node.s);
+        let mut from = stem.nodes.iter().rev().find(outside).map_or(0.0, |node| node.s);
+        // Nodes may be far apart: halve the way to the next, which is inside.
+        let next = stem.nodes.iter().find(|node| node.s > from).map_or(end, |node| node.s.min(end));
+        let mut to = next;
+        for _ in 0..12 {
+            let middle = f64::midpoint(from, to);
+            if stem.at(middle).p.distance(at) > radius {
+                from = middle;
+            } else {
+                to = middle;
+            }
+        }
         // The second winding from within is too near, however long the first is.
-        last.max(end - 7.0 * radius)
+        from.max(end - 7.0 * radius)
     }
 
     /// What grows at a fork: on the side that the branch does not take (M-024).
