@@ -33,7 +33,7 @@ fn run(scene: &Scene, params: &[(&str, &str)]) -> (f64, f64) {
 /// A square that about `n` branches fill.
 fn filling(n: usize) -> (f64, f64) {
     // A branch with its leaf and flower takes about this many squares of the stem's width.
-    const EACH: f64 = 36.0;
+    const EACH: f64 = 39.0;
     let side = 10.0 * (EACH * n as f64).sqrt();
     let scene = scene(&format!(
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {side} {side}'><rect class='rinceau-container' width='{side}' height='{side}'/></svg>"

@@ -14,6 +14,8 @@ pub trait Progress {
 pub struct Deadline {
     end: Option<Instant>,
     stages: Vec<(&'static str, f64)>,
+    /// Index of the stage that runs.
+    current: usize,
     since: Instant,
 }
 
@@ -21,7 +23,12 @@ impl Deadline {
     /// `None` never stops.
     pub fn new(limit: Option<Duration>) -> Self {
         let now = Instant::now();
-        Deadline { end: limit.and_then(|limit| now.checked_add(limit)), stages: Vec::new(), since: now }
+        Deadline {
+            end: limit.and_then(|limit| now.checked_add(limit)),
+            stages: Vec::new(),
+            current: 0,
+            since: now,
+        }
     }
 
     /// Starts the clock of a limit now; `None` never stops.
@@ -37,8 +44,8 @@ impl Deadline {
 
     fn book(&mut self) {
         let now = Instant::now();
-        if let Some(last) = self.stages.last_mut() {
-            last.1 += (now - self.since).as_secs_f64() * 1e3;
+        if let Some(stage) = self.stages.get_mut(self.current) {
+            stage.1 += (now - self.since).as_secs_f64() * 1e3;
         }
         self.since = now;
     }
@@ -46,9 +53,14 @@ impl Deadline {
 
 impl Progress for Deadline {
     fn step(&mut self, stage: &'static str, _done: f64) -> bool {
-        if self.stages.last().is_none_or(|last| last.0 != stage) {
+        if self.stages.get(self.current).is_none_or(|current| current.0 != stage) {
             self.book();
-            self.stages.push((stage, 0.0));
+            // A generator may come back to a stage, for every container or again and again.
+            let known = self.stages.iter().position(|(name, _)| *name == stage);
+            self.current = known.unwrap_or(self.stages.len());
+            if known.is_none() {
+                self.stages.push((stage, 0.0));
+            }
         }
         self.end.is_none_or(|end| Instant::now() < end)
     }

@@ -48,7 +48,7 @@ pub const MOST_STEMS: usize = 60_000;
 /// Nodes of a drawn stem at most.
 pub const MOST_NODES: usize = 2000;
 /// Main stems of one container that start by themselves, at most.
-const MOST_STARTS: usize = 12;
+const MOST_STARTS: usize = 200;
 /// Cells of one container at most; with more the same ornament takes longer and no other shape.
 const MOST_CELLS: f64 = 6e6;
 
@@ -201,10 +201,10 @@ impl Container<'_> {
             }
             progress.step("stem", 0.0);
             let left = rough.less(&plant.cells).inradius();
-            if left < 0.42 * inradius || left < 3.5 * sizes.width {
+            if left < (0.42 * inradius).min(14.0 * sizes.width) || left < 3.5 * sizes.width {
                 break;
             }
-            let Some(stem) = start::wander(&plant, &rough, None, rng) else { break };
+            let Some(stem) = start::wander(&plant, &rough, (None, start::TRIES[1]), rng) else { break };
             plant.add_main(stem);
         }
         finished &= plant.place_leaves(|done| progress.step("leaves", done));
@@ -289,7 +289,8 @@ impl Container<'_> {
             let stem = if plant.params.stem == "curl" {
                 start::curl(plant, rough, seed, longest)
             } else {
-                start::wander(plant, rough, seed, rng).or_else(|| start::curl(plant, rough, seed, longest))
+                start::wander(plant, rough, (seed, start::TRIES[0]), rng)
+                    .or_else(|| start::curl(plant, rough, seed, longest))
             };
             if let Some(stem) = stem {
                 plant.add_main(stem);

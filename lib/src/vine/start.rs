@@ -15,8 +15,9 @@ use crate::geom::flatten::start_tangent;
 use crate::rng::Rng;
 use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveCurvature, ParamCurveDeriv, PathEl, Point, Rect, Vec2};
 
-/// Particles that are tried.
-const TRIES: usize = 120;
+/// Particles that are tried for the first stem of a shape, and for those that fill up what it
+/// left.
+pub(super) const TRIES: [usize; 2] = [120, 24];
 
 /// Stems along a drawn path: a path of straight lines becomes a smooth curve through its nodes
 /// (M-018); one that the artist has curved is followed as drawn, through the same nodes.
@@ -216,7 +217,12 @@ impl<'a> Country<'a> {
 
 /// A stem that finds its way through what is free. `seed` is where it starts, if the artist
 /// says.
-pub(super) fn wander(plant: &Plant, rough: &Cells, seed: Option<Point>, rng: &mut Rng) -> Option<Stem> {
+pub(super) fn wander(
+    plant: &Plant,
+    rough: &Cells,
+    (seed, tries): (Option<Point>, usize),
+    rng: &mut Rng,
+) -> Option<Stem> {
     let free = rough.less(&plant.cells);
     let inradius = free.inradius();
     let reach = 0.95 * inradius;
@@ -233,7 +239,7 @@ pub(super) fn wander(plant: &Plant, rough: &Cells, seed: Option<Point>, rng: &mu
         .collect();
     let bounds = starts.iter().fold(Rect::from_points(*starts.first()?, starts[0]), |b, &p| b.union_pt(p));
     let mut best: Option<(f64, Vec<Node>)> = None;
-    for _ in 0..TRIES {
+    for _ in 0..tries {
         let index = (rng.unit() * starts.len() as f64) as usize;
         let at = seed.or(starts.get(index).copied())?;
         let (score, nodes) = particle(&country, at, reach, 0.75 * width + plant.sizes.edge, rng);
