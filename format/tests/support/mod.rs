@@ -23,7 +23,7 @@ pub fn artwork(leaves: usize) -> Artwork {
         if i == 1 {
             parts.push(part(0.5, Affine::rotate(0.3)));
         }
-        Item { of: "leaf".into(), parts }
+        Item::new("leaf", parts)
     });
     let group = Group { name: "elements".into(), hidden: false, items: items.collect() };
     Artwork { groups: vec![group], complete: true, decimals: 3, ..Artwork::default() }
