@@ -8,8 +8,8 @@
 //! 2. Start main stems: as drawn, as one curl, or finding their own way: `start`.
 //! 3. Let branches leave where they fit, each a magnetic curve (M-003 to M-014): `particle`,
 //!    `grow`.
-//! 4. Place flowers at tips, leaves at forks and where room is left (M-021 to M-028): `grow`,
-//!    `clip_art`.
+//! 4. Place flowers at tips, leaves at forks and where room is left (M-021 to M-028):
+//!    `grow::place`, `clip_art`.
 //! 5. Cut the lower stem where branches cross, if they may (M-041): `plait`.
 //! 6. Draw the stems as tapered outlines (M-015 to M-017): `stem`, `artwork`.
 //!

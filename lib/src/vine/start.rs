@@ -319,8 +319,7 @@ fn free_part(plant: &Plant, stem: Stem) -> Option<Stem> {
     if to - from < SHORTEST * stem.taper.start {
         return None;
     }
-    let nodes = stem.between(from, to).into_iter().map(|node| Node { s: node.s - from, ..node });
-    Some(Stem::new(0, None, stem.side, nodes.collect(), stem.taper)).filter(|stem| fits_period(plant, stem))
+    Some(stem.part(from, to)).filter(|stem| fits_period(plant, stem))
 }
 
 /// True unless a stem would meet its own copies in what repeats.
@@ -407,6 +406,5 @@ pub(super) fn part_inside(cells: &Cells, stem: &Stem) -> Option<Stem> {
         }
     }
     let (from, to) = best.filter(|(from, to)| to - from > 2.0 * stem.taper.start)?;
-    let nodes = stem.between(from, to).into_iter().map(|node| Node { s: node.s - from, ..node });
-    Some(Stem::new(0, None, 1.0, nodes.collect(), stem.taper))
+    Some(stem.part(from, to))
 }

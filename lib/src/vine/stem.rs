@@ -81,6 +81,12 @@ impl Stem {
         self.nodes.last().map_or(0.0, |node| node.s)
     }
 
+    /// The stem between two arc lengths, as one of its own.
+    pub fn part(&self, from: f64, to: f64) -> Self {
+        let nodes = self.between(from, to).into_iter().map(|node| Node { s: node.s - from, ..node });
+        Stem::new(self.level, self.parent, self.side, nodes.collect(), self.taper)
+    }
+
     /// How far it reaches from left to right, its width included.
     pub fn span(&self) -> f64 {
         let xs = || self.nodes.iter().map(|node| node.p.x);
