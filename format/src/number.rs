@@ -37,42 +37,64 @@ pub fn write_number(out: &mut String, value: f64, decimals: usize) {
 /// Appends a whole number divided by a power of ten: several times as fast as the general way,
 /// and most of what a layer consists of.
 fn write_scaled(out: &mut String, scaled: i64, decimals: usize) {
-    let mut digits = [0u8; 24];
-    let (mut at, mut rest, mut place) = (digits.len(), scaled.unsigned_abs(), 0);
-    let mut kept = false;
-    while rest > 0 || place <= decimals {
-        let digit = (rest % 10) as u8;
+    const POWERS: [u64; 10] =
+        [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000];
+    let size = scaled.unsigned_abs();
+    let (whole, mut fraction) = (size / POWERS[decimals], size % POWERS[decimals]);
+    let mut digits = [0u8; 32];
+    let mut at = digits.len();
+    let mut push = |digit: u8| {
+        at -= 1;
+        digits[at] = digit;
+    };
+    if fraction > 0 {
+        let mut places = decimals;
+        while fraction % 10 == 0 {
+            fraction /= 10;
+            places -= 1;
+        }
+        for _ in 0..places {
+            push(b'0' + (fraction % 10) as u8);
+            fraction /= 10;
+        }
+        push(b'.');
+    }
+    // Coordinates are small, and small numbers are divided faster.
+    let mut rest = whole;
+    while rest > u64::from(u32::MAX) {
+        push(b'0' + (rest % 10) as u8);
         rest /= 10;
-        kept |= digit > 0 || place >= decimals;
-        if place == decimals && at < digits.len() {
-            at -= 1;
-            digits[at] = b'.';
-        }
-        if kept {
-            at -= 1;
-            digits[at] = b'0' + digit;
-        }
-        place += 1;
     }
+    let mut rest = rest as u32;
+    while rest >= 10 {
+        push(b'0' + (rest % 10) as u8);
+        rest /= 10;
+    }
+    push(b'0' + rest as u8);
     if scaled < 0 {
-        out.push('-');
+        push(b'-');
     }
-    out.extend(digits[at..].iter().map(|&digit| char::from(digit)));
+    out.push_str(std::str::from_utf8(&digits[at..]).unwrap_or_default());
 }
 
 /// SVG path data in absolute commands.
 pub fn path_data(path: &BezPath, decimals: usize) -> String {
     let mut out = String::new();
+    write_path_data(&mut out, path, decimals);
+    out
+}
+
+/// Appends SVG path data in absolute commands.
+pub(crate) fn write_path_data(out: &mut String, path: &BezPath, decimals: usize) {
     for el in path.elements() {
         match *el {
-            PathEl::MoveTo(p) => command(&mut out, 'M', &[p], decimals),
-            PathEl::LineTo(p) => command(&mut out, 'L', &[p], decimals),
-            PathEl::QuadTo(a, p) => command(&mut out, 'Q', &[a, p], decimals),
-            PathEl::CurveTo(a, b, p) => command(&mut out, 'C', &[a, b, p], decimals),
+            PathEl::MoveTo(p) => command(out, 'M', &[p], decimals),
+            PathEl::LineTo(p) => command(out, 'L', &[p], decimals),
+            PathEl::QuadTo(a, p) => command(out, 'Q', &[a, p], decimals),
+            PathEl::CurveTo(a, b, p) => command(out, 'C', &[a, b, p], decimals),
             PathEl::ClosePath => out.push('Z'),
         }
     }
-    out
 }
 
 fn command(out: &mut String, letter: char, points: &[Point], decimals: usize) {

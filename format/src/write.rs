@@ -1,7 +1,7 @@
 //! Artwork to a result layer.
 
 use crate::artwork::{Artwork, Group, Item, Part, Symbol};
-use crate::number::{path_data, write_number};
+use crate::number::{write_number, write_path_data};
 use crate::recipe::Recipe;
 use crate::vocabulary::{INKSCAPE, NAMESPACE, SODIPODI, SVG, XLINK};
 use kurbo::Affine;
@@ -182,8 +182,10 @@ fn write_part(out: &mut String, part: &Part, item: Option<(&str, &str)>, decimal
         Cow::Borrowed(&part.path)
     };
     attribute(out, "style", &part.style.css());
-    attribute(out, "d", &path_data(&path, decimals));
-    out.push_str("/>");
+    // Most of a layer, and nothing in it needs to be escaped.
+    out.push_str(" d=\"");
+    write_path_data(out, &path, decimals);
+    out.push_str("\"/>");
 }
 
 /// Coefficients multiply coordinates of a whole page, so they carry more decimals.
@@ -205,7 +207,9 @@ fn matrix(transform: Affine, decimals: usize) -> String {
 
 /// Appends ` name="value"`, escaped.
 pub(crate) fn attribute(out: &mut String, name: &str, value: &str) {
-    let _ = write!(out, " {name}=\"");
+    out.push(' ');
+    out.push_str(name);
+    out.push_str("=\"");
     out.push_str(&escaped(value));
     out.push('"');
 }
@@ -213,7 +217,6 @@ pub(crate) fn attribute(out: &mut String, name: &str, value: &str) {
 /// A value escaped for double quotes. Characters that XML forbids are dropped: they cannot
 /// come from a drawing, only from a shell.
 pub(crate) fn escaped(value: &str) -> Cow<'_, str> {
-    // Path data is most of a layer and has nothing to escape.
     let is_plain = |b: u8| !matches!(b, b'&' | b'<' | b'>' | b'"' | 0..b' ' | 0x80..);
     if value.bytes().all(is_plain) {
         return Cow::Borrowed(value);

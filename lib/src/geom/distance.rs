@@ -78,31 +78,53 @@ pub fn covered(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize
 
 /// Marks the cells inside simple contours in a grid with this many columns.
 pub fn cover(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize, covered: &mut [bool]) {
+    scan(contours, origin, cell, columns, covered, |around| around % 2 != 0);
+}
+
+/// Marks the cells that contours wind around (nonzero), whatever crosses what.
+pub fn cover_wound(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize, covered: &mut [bool]) {
+    scan(contours, origin, cell, columns, covered, |around| around != 0);
+}
+
+/// Marks the cells whose winding number is `inside`, by scan lines.
+fn scan(
+    contours: &[Vec<Point>],
+    origin: Point,
+    cell: f64,
+    columns: usize,
+    covered: &mut [bool],
+    inside: impl Fn(i32) -> bool,
+) {
     let rows = covered.len() / columns.max(1);
     // Rows whose middle lies in [low, high): each edge end counts once.
     let row = |y: f64| (((y - origin.y) / cell - 0.5).ceil().max(0.0) as usize).min(rows);
     let ys = || contours.iter().flatten().map(|p| p.y);
     let (first, last) =
         (row(ys().fold(f64::INFINITY, f64::min)), row(ys().fold(f64::NEG_INFINITY, f64::max)));
-    let mut crossings: Vec<Vec<f64>> = vec![Vec::new(); last.saturating_sub(first)];
+    let mut crossings: Vec<Vec<(f64, i32)>> = vec![Vec::new(); last.saturating_sub(first)];
     for contour in contours {
         let Some(&end) = contour.last() else { continue };
         let mut previous = end;
         for &p in contour {
-            let (low, high) = if previous.y <= p.y { (previous, p) } else { (p, previous) };
+            let (low, high, way) = if previous.y <= p.y { (previous, p, 1) } else { (p, previous, -1) };
             for r in row(low.y)..row(high.y) {
                 let y = origin.y + (r as f64 + 0.5) * cell;
-                crossings[r - first].push(low.x + (y - low.y) / (high.y - low.y) * (high.x - low.x));
+                let x = low.x + (y - low.y) / (high.y - low.y) * (high.x - low.x);
+                crossings[r - first].push((x, way));
             }
             previous = p;
         }
     }
+    let column = |x: f64| (((x - origin.x) / cell - 0.5).ceil().max(0.0) as usize).min(columns);
     for (r, crossings) in crossings.iter_mut().enumerate() {
-        crossings.sort_by(f64::total_cmp);
+        crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
         let start = (r + first) * columns;
-        for pair in crossings.chunks_exact(2) {
-            let column = |x: f64| (((x - origin.x) / cell - 0.5).ceil().max(0.0) as usize).min(columns);
-            covered[start + column(pair[0])..start + column(pair[1])].fill(true);
+        let mut around = 0;
+        for pair in crossings.windows(2) {
+            around += pair[0].1;
+            if inside(around) {
+                covered[start + column(pair[0].0)..start + column(pair[1].0)].fill(true);
+            }
         }
     }
 }

@@ -42,7 +42,7 @@ impl Layers {
     /// Adds what has grown in one container.
     pub fn add(&mut self, plant: &Plant, library: &Library, fill: Option<&str>, decimals: usize) {
         let tones = palette(&plant.params.palette, fill);
-        let tolerance = plant.sizes.width / 400.0;
+        let tolerance = plant.sizes.width / 250.0;
         self.add_stems(plant, tones[0], tolerance);
         // Built-in art has the tones of its container; what the artist drew is the same in all.
         let mut symbols: BTreeMap<usize, usize> = BTreeMap::new();
@@ -111,7 +111,7 @@ impl Layers {
         }
         for stem in &plant.stems {
             let style = line(plant.sizes.width / 20.0, "#ff0000");
-            self.centre_lines.items.push(item("spine", stem.centre_line(tolerance), style));
+            self.centre_lines.items.push(item("spine", stem.centre_line(4.0 * tolerance), style));
         }
     }
 

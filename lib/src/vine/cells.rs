@@ -37,6 +37,13 @@ impl Owner {
     }
 }
 
+impl Claim {
+    /// The owner of a cell that is not free: outside, if nobody claimed it.
+    fn known(self) -> Owner {
+        if self.owner == Owner::FREE { Owner::OUTSIDE } else { self.owner }
+    }
+}
+
 /// Where the cells lie.
 #[derive(Clone, Copy, Debug)]
 struct Grid {
@@ -50,15 +57,97 @@ struct Grid {
     wrap: usize,
 }
 
+/// What lies in a cell that is not free.
+#[derive(Clone, Copy, Debug)]
+struct Claim {
+    owner: Owner,
+    /// Where on its stem it lies, by arc length.
+    place: f32,
+}
+
 /// The cells of a container.
+///
+/// Most tests ask only whether cells are free, so that is kept apart, a bit each: 64 cells are
+/// looked at in one step, and even millions of them stay in the processor's cache.
 pub(super) struct Cells {
     grid: Grid,
-    owners: Vec<Owner>,
-    /// Where on its stem a claim lies, by arc length.
-    places: Vec<f32>,
+    free: Bits,
+    /// Inside, and no body there.
+    open: Bits,
+    /// Of cells that are neither free nor outside, at `Grid::place`.
+    claims: Vec<Claim>,
+}
+
+/// Claims of so many columns and rows lie together, as memory likes it.
+const TILE: usize = 8;
+
+/// A bit for every cell, row by row, each row in whole words.
+#[derive(Clone)]
+struct Bits {
+    words: Vec<u64>,
+    per_row: usize,
+}
+
+impl Bits {
+    fn new(columns: usize, rows: usize) -> Self {
+        let per_row = columns.div_ceil(64);
+        Bits { words: vec![0; per_row * rows], per_row }
+    }
+
+    fn get(&self, column: usize, row: usize) -> bool {
+        self.words[row * self.per_row + column / 64] >> (column % 64) & 1 == 1
+    }
+
+    fn set(&mut self, column: usize, row: usize) {
+        self.words[row * self.per_row + column / 64] |= 1 << (column % 64);
+    }
+
+    fn clear(&mut self, Run { row, from, to }: Run) {
+        let (mut word, last) = (from / 64, to / 64);
+        while word <= last {
+            self.words[row * self.per_row + word] &= !mask(word, from, to);
+            word += 1;
+        }
+    }
+
+    /// Visits those columns of a run whose bit is `wanted`, until `visit` says false. True if it
+    /// never did.
+    #[inline(always)]
+    fn each(&self, Run { row, from, to }: Run, wanted: bool, mut visit: impl FnMut(usize) -> bool) -> bool {
+        let (mut word, last) = (from / 64, to / 64);
+        while word <= last {
+            let bits = self.words[row * self.per_row + word];
+            let mut left = if wanted { bits } else { !bits } & mask(word, from, to);
+            while left != 0 {
+                if !visit(word * 64 + left.trailing_zeros() as usize) {
+                    return false;
+                }
+                left &= left - 1;
+            }
+            word += 1;
+        }
+        true
+    }
+}
+
+/// Those bits of a word whose columns lie in a run.
+#[inline]
+fn mask(word: usize, from: usize, to: usize) -> u64 {
+    let low = if word == from / 64 { u64::MAX << (from % 64) } else { u64::MAX };
+    let high = if word == to / 64 { u64::MAX >> (63 - to % 64) } else { u64::MAX };
+    low & high
+}
+
+/// Neighbours in a row, the last included.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    row: usize,
+    from: usize,
+    to: usize,
 }
 
 /// Rounded down; the processor's own instruction for it is not on every machine.
+#[inline]
 fn floor(x: f64) -> i64 {
     let whole = x as i64;
     whole - i64::from((whole as f64) > x)
@@ -72,29 +161,75 @@ impl Grid {
         (half * half + 0.25 * apart * apart).sqrt()
     }
 
-    /// Visits the cells whose middle lies within a radius, `None` for those beyond the grid,
-    /// until `visit` says false. True if it never did.
-    fn near(&self, at: Point, radius: f64, mut visit: impl FnMut(Option<usize>) -> bool) -> bool {
+    /// Visits the runs of cells whose middle lies within a radius, `None` for those beyond the
+    /// grid, until `visit` says false. True if it never did.
+    #[inline(always)]
+    fn near(&self, at: Point, radius: f64, mut visit: impl FnMut(Option<Run>) -> bool) -> bool {
         let x = (at.x - self.origin.x) * self.per_unit - 0.5;
         let y = (at.y - self.origin.y) * self.per_unit - 0.5;
         let r = radius * self.per_unit;
-        for row in -floor(r - y)..=floor(y + r) {
+        for row in -floor(r - y)..floor(y + r) + 1 {
             let dy = row as f64 - y;
             let half = (r * r - dy * dy).max(0.0).sqrt();
-            for column in -floor(half - x)..=floor(x + half) {
-                if !visit(self.index(column, row)) {
+            let (from, to) = (-floor(half - x), floor(x + half));
+            let mut at = from;
+            while at <= to {
+                let (run, next) = self.run(row, at, to);
+                if !visit(run) {
                     return false;
                 }
+                at = next;
             }
         }
         true
     }
 
-    fn index(&self, column: i64, row: i64) -> Option<usize> {
+    /// The first cells of a row, from a column on, that are neighbours on the grid; `None` if
+    /// they are beyond it. And the column where to go on.
+    #[inline(always)]
+    fn run(&self, row: i64, from: i64, to: i64) -> (Option<Run>, i64) {
+        // Most are well within the grid.
+        if row >= 0 && row < self.rows as i64 && from >= 0 && to < self.columns as i64 {
+            return (Some(Run { row: row as usize, from: from as usize, to: to as usize }), to + 1);
+        }
+        self.run_at_edge(row, from, to)
+    }
+
+    #[cold]
+    fn run_at_edge(&self, row: i64, from: i64, to: i64) -> (Option<Run>, i64) {
+        let columns = self.columns as i64;
+        if row < 0 || row >= self.rows as i64 {
+            return (None, to + 1);
+        }
+        let (first, next) = if self.wrap > 0 {
+            let first = from.rem_euclid(columns);
+            (first, (from + columns - first).min(to + 1))
+        } else if from < 0 {
+            return (None, 0);
+        } else if from >= columns {
+            return (None, to + 1);
+        } else {
+            (from, columns.min(to + 1))
+        };
+        let run = Run { row: row as usize, from: first as usize, to: (first + next - from - 1) as usize };
+        (Some(run), next)
+    }
+
+    /// Where the claim of a cell lies: tile by tile.
+    #[inline(always)]
+    fn place(&self, column: usize, row: usize) -> usize {
+        let tile = row / TILE * self.columns.div_ceil(TILE) + column / TILE;
+        (tile * TILE + row % TILE) * TILE + column % TILE
+    }
+
+    /// Column and row of a place, if it is on the grid.
+    fn cell(&self, at: Point) -> Option<(usize, usize)> {
+        let column = floor((at.x - self.origin.x) * self.per_unit);
+        let row = floor((at.y - self.origin.y) * self.per_unit);
         let column = if self.wrap > 0 { column.rem_euclid(self.wrap as i64) } else { column };
         let inside =
             column >= 0 && row >= 0 && (column as usize) < self.columns && (row as usize) < self.rows;
-        inside.then(|| row as usize * self.columns + column as usize)
+        inside.then_some((column as usize, row as usize))
     }
 }
 
@@ -115,10 +250,14 @@ impl Cells {
         let columns = if wrap > 0 { wrap } else { count(bounds.width()) };
         let rows = count(bounds.height());
         let inside = covered(region.contours(), origin, size, columns, rows);
-        let owners = inside.iter().map(|&inside| if inside { Owner::FREE } else { Owner::OUTSIDE }).collect();
-        let places = vec![0.0; columns * rows];
+        let mut free = Bits::new(columns, rows);
+        for (i, _) in inside.iter().enumerate().filter(|(_, inside)| **inside) {
+            free.set(i % columns, i / columns);
+        }
         let grid = Grid { origin, size, per_unit: 1.0 / size, columns, rows, wrap };
-        let mut cells = Cells { grid, owners, places };
+        let tiles = columns.div_ceil(TILE) * rows.div_ceil(TILE);
+        let claims = vec![Claim { owner: Owner::FREE, place: 0.0 }; tiles * TILE * TILE];
+        let mut cells = Cells { grid, open: free.clone(), free, claims };
         // What the edge passes near is outside for certain.
         for contour in region.contours() {
             cells.close_edge(contour);
@@ -146,8 +285,11 @@ impl Cells {
                 if self.grid.wrap > 0 && !(left..=right).contains(&at.x) {
                     continue;
                 }
-                self.grid.near(at, self.grid.reach(0.0, apart), |i| {
-                    i.into_iter().for_each(|i| self.owners[i] = Owner::OUTSIDE);
+                self.grid.near(at, self.grid.reach(0.0, apart), |run| {
+                    if let Some(run) = run {
+                        self.free.clear(run);
+                        self.open.clear(run);
+                    }
                     true
                 });
             }
@@ -164,18 +306,27 @@ impl Cells {
         apart: f64,
         mut may: impl FnMut(Owner, f64) -> bool,
     ) -> bool {
-        self.grid.near(at, self.grid.reach(radius, apart), |i| {
-            let owner = i.map_or(Owner::OUTSIDE, |i| self.owners[i]);
-            owner == Owner::FREE || may(owner, i.map_or(0.0, |i| f64::from(self.places[i])))
+        self.grid.near(at, self.grid.reach(radius, apart), |run| match run {
+            None => may(Owner::OUTSIDE, 0.0),
+            Some(run) => self.free.each(run, false, |column| {
+                let claim = self.claims[self.grid.place(column, run.row)];
+                may(claim.known(), f64::from(claim.place))
+            }),
         })
     }
 
     /// Claims a disc for a thing; `place` is the arc length there.
     pub fn claim(&mut self, id: u32, at: Point, radius: f64, apart: f64, place: f64) {
-        let (owners, places) = (&mut self.owners, &mut self.places);
-        self.grid.near(at, self.grid.reach(radius, apart), |i| {
-            if let Some(i) = i.filter(|&i| owners[i] != Owner::OUTSIDE && !owners[i].is_body()) {
-                (owners[i], places[i]) = (Owner::of(id, true), place as f32);
+        let Cells { grid, free, open, claims } = self;
+        let claim = Claim { owner: Owner::of(id, true), place: place as f32 };
+        grid.near(at, grid.reach(radius, apart), |run| {
+            if let Some(run) = run {
+                open.each(run, true, |column| {
+                    claims[grid.place(column, run.row)] = claim;
+                    true
+                });
+                open.clear(run);
+                free.clear(run);
             }
             true
         });
@@ -183,10 +334,15 @@ impl Cells {
 
     /// Claims the gap around a disc: what others have there is theirs already.
     pub fn claim_gap(&mut self, id: u32, at: Point, radius: f64, apart: f64, place: f64) {
-        let (owners, places) = (&mut self.owners, &mut self.places);
-        self.grid.near(at, self.grid.reach(radius, apart), |i| {
-            if let Some(i) = i.filter(|&i| owners[i] == Owner::FREE) {
-                (owners[i], places[i]) = (Owner::of(id, false), place as f32);
+        let Cells { grid, free, claims, .. } = self;
+        let claim = Claim { owner: Owner::of(id, false), place: place as f32 };
+        grid.near(at, grid.reach(radius, apart), |run| {
+            if let Some(run) = run {
+                free.each(run, true, |column| {
+                    claims[grid.place(column, run.row)] = claim;
+                    true
+                });
+                free.clear(run);
             }
             true
         });
@@ -199,15 +355,32 @@ impl Cells {
 
     /// These cells, outside where another grid over the same place is claimed.
     pub fn less(&self, other: &Cells) -> Cells {
-        let owners = self.owners.iter().enumerate().map(|(i, &owner)| {
-            if other.owner(self.middle(i)) == Owner::FREE { owner } else { Owner::OUTSIDE }
-        });
-        Cells { grid: self.grid, owners: owners.collect(), places: self.places.clone() }
+        let mut free = Bits::new(self.grid.columns, self.grid.rows);
+        for row in 0..self.grid.rows {
+            let run = Run { row, from: 0, to: self.grid.columns - 1 };
+            self.free.each(run, true, |column| {
+                if other.is_free(self.middle(row * self.grid.columns + column)) {
+                    free.set(column, row);
+                }
+                true
+            });
+        }
+        Cells { grid: self.grid, open: free.clone(), free, claims: self.claims.clone() }
+    }
+
+    /// True if nobody claims a place.
+    #[inline]
+    pub fn is_free(&self, at: Point) -> bool {
+        self.grid.cell(at).is_some_and(|(column, row)| self.free.get(column, row))
     }
 
     /// Who claims a place.
     pub fn owner(&self, at: Point) -> Owner {
-        self.cell(at).map_or(Owner::OUTSIDE, |i| self.owners[i])
+        match self.grid.cell(at) {
+            None => Owner::OUTSIDE,
+            Some((column, row)) if self.free.get(column, row) => Owner::FREE,
+            Some((column, row)) => self.claims[self.grid.place(column, row)].known(),
+        }
     }
 
     /// Squared distance of every cell to the nearest that is not free, in cells; and the number
@@ -218,8 +391,7 @@ impl Cells {
         let mut taken = vec![true; columns * (self.grid.rows + 2)];
         for row in 0..self.grid.rows {
             for column in 0..self.grid.columns {
-                taken[(row + 1) * columns + column + 1] =
-                    self.owners[row * self.grid.columns + column] != Owner::FREE;
+                taken[(row + 1) * columns + column + 1] = !self.free.get(column, row);
             }
         }
         let framed = squared_distances(&taken, columns);
@@ -234,11 +406,6 @@ impl Cells {
         (self.grid.wrap > 0).then_some(self.grid.wrap as f64 * self.grid.size)
     }
 
-    /// Radius of the largest circle that is free.
-    pub fn inradius(&self) -> f64 {
-        self.clearances().0.into_iter().fold(0.0, f64::max).sqrt() * self.grid.size
-    }
-
     /// The middle of a cell.
     pub fn middle(&self, i: usize) -> Point {
         let (column, row) = ((i % self.grid.columns) as f64, (i / self.grid.columns) as f64);
@@ -250,8 +417,6 @@ impl Cells {
 
     /// The cell of a place, if it is on the grid.
     pub fn cell(&self, at: Point) -> Option<usize> {
-        let (x, y) =
-            ((at.x - self.grid.origin.x) / self.grid.size, (at.y - self.grid.origin.y) / self.grid.size);
-        self.grid.index(floor(x), floor(y))
+        self.grid.cell(at).map(|(column, row)| row * self.grid.columns + column)
     }
 }

@@ -2,20 +2,18 @@
 //! direction, and the places where they go.
 
 use super::cells::{Cells, Owner};
-use crate::geom::boolean::{Contour, simplified};
+use crate::geom::distance::cover_wound;
 use crate::geom::flatten::flatten;
 use crate::geom::polyline::left_of;
-use crate::geom::region::Region;
 use crate::rng::Rng;
-use kurbo::{Affine, BezPath, Point, Rect, Shape};
-use rayon::prelude::*;
+use kurbo::{Affine, BezPath, Point, Rect, Shape, Vec2};
 use rinceau_format::{Document, Element, Error, Scene, Selection, Style};
 use std::collections::BTreeSet;
 
 const DRAWING: &str = include_str!("../../../samples/elements/vine.svg");
 
 /// Samples of an outline are this far apart, in lengths of the template.
-const APART: f64 = 1.0 / 18.0;
+const APART: f64 = 1.0 / 14.0;
 /// Samples of its inside, so that nothing small settles there.
 const INSIDE: f64 = 1.0 / 7.0;
 
@@ -70,34 +68,48 @@ impl Art {
                 (to_unit * part.path.clone(), part.style.scaled(to_unit.determinant().abs().sqrt(), 9))
             })
             .collect();
-        let contours = silhouette(&parts);
-        let bounds = bounds_of(&contours);
-        let Some(region) = Region::new(contours.clone()).filter(|_| bounds.area() > 1e-9) else {
+        let silhouette = Silhouette::new(&parts);
+        let area = silhouette.area();
+        if area.is_nan() || area < 1e-9 {
             let sentence = format!("The element '{}' covers nothing", source.id);
             return Err(source.error("flat-element", sentence, "Draw it as closed or stroked shapes"));
-        };
+        }
         // A template's size is what it covers, whatever the length of its spine.
         const LEAF: f64 = 0.3;
-        let shrunk = (region.area() / LEAF).sqrt();
+        let shrunk = (area / LEAF).sqrt();
         let to_size = Affine::scale(1.0 / shrunk);
         let parts: Vec<(BezPath, Style)> =
             parts.into_iter().map(|(path, style)| (to_size * path, style.scaled(1.0 / shrunk, 9))).collect();
-        let contours: Vec<Contour> =
-            contours.iter().map(|contour| contour.iter().map(|&p| to_size * p).collect()).collect();
-        let bounds = bounds_of(&contours);
-        let samples = samples(&contours);
-        let middle = bounds.center().to_vec2().hypot();
         let names = names(element).map(str::to_owned).collect();
-        Ok(Art {
-            id: source.id.clone(),
+        Ok(Art::of_size(source.id.clone(), builtin, names, parts, &silhouette.scaled(1.0 / shrunk)))
+    }
+
+    fn of_size(
+        id: String,
+        builtin: bool,
+        names: Vec<String>,
+        parts: Vec<(BezPath, Style)>,
+        silhouette: &Silhouette,
+    ) -> Self {
+        let middle = silhouette.bounds.center().to_vec2().hypot();
+        let radius = silhouette.lines.iter().flatten().map(|p| p.to_vec2().hypot()).fold(0.0, f64::max);
+        let around: Vec<(Point, f64)> =
+            silhouette.outline(2.0 * APART).into_iter().map(|p| (p, 2.0 * APART)).collect();
+        let mut outline = silhouette.outline(APART);
+        // What is farthest from the stem meets others first.
+        outline.sort_by(|p, q| q.to_vec2().hypot2().total_cmp(&p.to_vec2().hypot2()));
+        let outline = outline.into_iter().map(|p| (p, APART));
+        let inside = silhouette.inside().into_iter().map(|p| (p, 0.9 * INSIDE));
+        Art {
+            id,
             builtin,
             names,
+            radius,
+            samples: outline.chain(inside).collect(),
+            around,
+            central: middle < 0.2 * silhouette.bounds.size().max_side(),
             parts,
-            radius: radius(&contours),
-            around: outline_samples(&contours, 2.0 * APART),
-            samples,
-            central: middle < 0.2 * bounds.size().max_side(),
-        })
+        }
     }
 
     /// True if `may` allows every cell that the art touches in this pose.
@@ -132,72 +144,156 @@ fn names(element: &Element) -> impl Iterator<Item = &str> {
     element.sets.iter().chain(own).map(String::as_str).filter(|name| !name.is_empty())
 }
 
-/// What parts cover together, strokes included.
-fn silhouette(parts: &[(BezPath, Style)]) -> Vec<Contour> {
-    const TOLERANCE: f64 = 5e-3;
-    let mut contours = Vec::new();
-    for (path, style) in parts {
-        let subpaths = flatten(path, TOLERANCE);
-        if style.is_filled() {
-            contours
-                .extend(simplified(&subpaths.iter().map(|s| s.points.clone()).collect::<Vec<_>>(), false));
-        }
-        for subpath in &subpaths {
-            let width = style.stroke_width().unwrap_or(0.0);
-            contours.extend(crate::geom::boolean::stroked(&subpath.points, subpath.closed, width));
-        }
-    }
-    simplified(&contours, false)
+/// What parts cover together, strokes included: in squares, which is exact enough to lay
+/// samples and takes a hundredth of the time that a union of outlines does.
+struct Silhouette {
+    bounds: Rect,
+    /// Their edges, as lines; some may lie inside other parts.
+    lines: Vec<Vec<Point>>,
+    /// Side of a square.
+    cell: f64,
+    columns: usize,
+    covered: Vec<bool>,
 }
 
-fn bounds_of(contours: &[Contour]) -> Rect {
-    let mut points = contours.iter().flatten();
-    let first = points.next().copied().unwrap_or_default();
-    points.fold(Rect::from_points(first, first), |bounds, &p| bounds.union_pt(p))
-}
+impl Silhouette {
+    /// Squares along the longer side.
+    const SQUARES: f64 = 96.0;
 
-fn radius(contours: &[Contour]) -> f64 {
-    contours.iter().flatten().map(|p| p.to_vec2().hypot()).fold(0.0, f64::max)
-}
-
-/// Samples of outlines at equal distances.
-fn outline_samples(contours: &[Contour], apart: f64) -> Vec<(Point, f64)> {
-    let mut samples = Vec::new();
-    for contour in contours {
-        let Some(&last) = contour.last() else { continue };
-        let mut previous = last;
-        let mut left = 0.0;
-        for &p in contour {
-            let length = previous.distance(p);
-            let mut s = left;
-            while s < length {
-                samples.push((previous.lerp(p, s / length), apart));
-                s += apart;
+    fn new(parts: &[(BezPath, Style)]) -> Self {
+        const TOLERANCE: f64 = 5e-3;
+        let mut fills: Vec<Vec<Vec<Point>>> = Vec::new();
+        let mut strokes: Vec<(Vec<Point>, f64)> = Vec::new();
+        let mut lines = Vec::new();
+        for (path, style) in parts {
+            let half = style.stroke_width().unwrap_or(0.0) / 2.0;
+            let mut filled = Vec::new();
+            for subpath in flatten(path, TOLERANCE) {
+                let mut points = subpath.points;
+                if half > 0.0 || !style.is_filled() {
+                    let mut line = points.clone();
+                    line.extend(subpath.closed.then(|| points[0]));
+                    lines.extend([half, -half].map(|half| beside(&line, half)));
+                    strokes.push((line, half));
+                }
+                if style.is_filled() {
+                    filled.push(points.clone());
+                    points.push(points[0]);
+                    lines.push(points);
+                }
             }
-            left = s - length;
-            previous = p;
+            fills.push(filled);
         }
+        let mut points = lines.iter().flatten();
+        let first = points.next().copied().unwrap_or_default();
+        let bounds = points.fold(Rect::from_points(first, first), |bounds, &p| bounds.union_pt(p));
+        let cell = (bounds.size().max_side() / Self::SQUARES).max(f64::MIN_POSITIVE);
+        let count = |side: f64| (side / cell) as usize + 1;
+        let (columns, rows) = (count(bounds.width()), count(bounds.height()));
+        let mut silhouette = Silhouette { bounds, lines, cell, columns, covered: vec![false; columns * rows] };
+        for contours in &fills {
+            cover_wound(contours, bounds.origin(), cell, columns, &mut silhouette.covered);
+        }
+        for (line, half) in &strokes {
+            silhouette.cover_stroke(line, *half);
+        }
+        silhouette
     }
-    samples
-}
 
-/// Samples of what contours cover.
-fn samples(contours: &[Contour]) -> Vec<(Point, f64)> {
-    let mut samples = outline_samples(contours, APART);
-    // What is farthest from the stem meets others first.
-    samples.sort_by(|(p, _), (q, _)| q.to_vec2().hypot2().total_cmp(&p.to_vec2().hypot2()));
-    let Some(region) = Region::new(contours.to_vec()) else { return samples };
-    let bounds = region.bounds();
-    let count = |side: f64| (side / INSIDE).ceil() as usize;
-    for row in 0..count(bounds.height()) {
-        for column in 0..count(bounds.width()) {
-            let at = bounds.origin() + INSIDE * kurbo::Vec2::new(column as f64 + 0.5, row as f64 + 0.5);
-            if region.contains(at) && region.distance(at, INSIDE) > 0.5 * INSIDE {
-                samples.push((at, 0.9 * INSIDE));
+    fn cover_stroke(&mut self, line: &[Point], half: f64) {
+        let step = self.cell.max(0.5 * half);
+        for at in spaced(line, step) {
+            let (low, high) = (at - Vec2::new(half, half), at + Vec2::new(half, half));
+            let index = |side: f64| (side / self.cell).max(0.0) as usize;
+            let (left, top) = (index(low.x - self.bounds.x0), index(low.y - self.bounds.y0));
+            let (right, bottom) = (index(high.x - self.bounds.x0), index(high.y - self.bounds.y0));
+            for row in top..=bottom.min(self.covered.len() / self.columns - 1) {
+                for column in left..=right.min(self.columns - 1) {
+                    if self.middle(column, row).distance(at) <= half {
+                        self.covered[row * self.columns + column] = true;
+                    }
+                }
             }
         }
     }
-    samples
+
+    fn middle(&self, column: usize, row: usize) -> Point {
+        self.bounds.origin() + self.cell * Vec2::new(column as f64 + 0.5, row as f64 + 0.5)
+    }
+
+    fn scaled(mut self, scale: f64) -> Self {
+        self.bounds = self.bounds.scale_from_origin(scale);
+        self.cell *= scale;
+        self.lines.iter_mut().flatten().for_each(|p| *p = (scale * p.to_vec2()).to_point());
+        self
+    }
+
+    fn area(&self) -> f64 {
+        self.covered.iter().filter(|&&covered| covered).count() as f64 * self.cell * self.cell
+    }
+
+    /// True if all is covered around a place.
+    fn is_inside(&self, at: Point, radius: f64) -> bool {
+        let covers = |p: Point| {
+            let (x, y) = ((p.x - self.bounds.x0) / self.cell, (p.y - self.bounds.y0) / self.cell);
+            let (column, row) = (x as usize, y as usize);
+            x >= 0.0
+                && y >= 0.0
+                && column < self.columns
+                && self.covered.get(row * self.columns + column).is_some_and(|&covered| covered)
+        };
+        const DIRECTIONS: [(f64, f64); 8] = [
+            (1.0, 0.0),
+            (0.7, 0.7),
+            (0.0, 1.0),
+            (-0.7, 0.7),
+            (-1.0, 0.0),
+            (-0.7, -0.7),
+            (0.0, -1.0),
+            (0.7, -0.7),
+        ];
+        covers(at) && DIRECTIONS.iter().all(|&(x, y)| covers(at + radius * Vec2::new(x, y)))
+    }
+
+    /// Samples along the edges, but for those within other parts.
+    fn outline(&self, apart: f64) -> Vec<Point> {
+        let samples = self.lines.iter().flat_map(|line| spaced(line, apart));
+        samples.filter(|&at| !self.is_inside(at, 2.5 * self.cell)).collect()
+    }
+
+    /// Samples away from the edges.
+    fn inside(&self) -> Vec<Point> {
+        let count = |side: f64| (side / INSIDE).ceil() as usize;
+        let (columns, rows) = (count(self.bounds.width()), count(self.bounds.height()));
+        let place = |i: usize| Vec2::new((i % columns) as f64 + 0.5, (i / columns) as f64 + 0.5);
+        let places = (0..columns * rows).map(|i| self.bounds.origin() + INSIDE * place(i));
+        places.filter(|&at| self.is_inside(at, 0.5 * INSIDE)).collect()
+    }
+}
+
+/// A line beside another; sharp corners are cut or looped, as samples may.
+fn beside(line: &[Point], distance: f64) -> Vec<Point> {
+    let offset = |pair: &[Point]| {
+        let along = (pair[1] - pair[0]) / pair[1].distance(pair[0]).max(f64::MIN_POSITIVE);
+        pair.iter().map(|&p| p + distance * left_of(along)).collect::<Vec<_>>()
+    };
+    line.windows(2).flat_map(offset).collect()
+}
+
+/// Points along a line at equal distances, its start first.
+fn spaced(line: &[Point], apart: f64) -> Vec<Point> {
+    let mut points = Vec::new();
+    let mut left = 0.0;
+    for pair in line.windows(2) {
+        let length = pair[0].distance(pair[1]);
+        let mut s = left;
+        while s < length {
+            points.push(pair[0].lerp(pair[1], s / length));
+            s += apart;
+        }
+        left = s - length;
+    }
+    points
 }
 
 /// For each level some names, and for each name the templates it means.
@@ -223,7 +319,7 @@ impl Library {
             let drawing = Document::from_bytes(DRAWING.as_bytes().to_vec())?.scene(&Selection::default())?;
             let named: Vec<&Element> = drawing.elements.iter().filter(is_named).collect();
             let built: Result<Vec<Art>, Error> =
-                named.into_par_iter().map(|element| Art::new(element, true)).collect();
+                named.into_iter().map(|element| Art::new(element, true)).collect();
             arts.extend(built?);
         }
         arts.push(ball());
@@ -274,18 +370,8 @@ pub(super) fn pick(choices: &[Vec<usize>], rng: &mut Rng) -> Option<usize> {
 fn ball() -> Art {
     let path = kurbo::Circle::new((0.0, 0.0), 0.22).to_path(1e-4);
     let parts = vec![(path, Style::filled("#111111"))];
-    let contours = silhouette(&parts);
-    let samples = samples(&contours);
-    Art {
-        id: "ball".into(),
-        builtin: true,
-        names: vec!["ball".into()],
-        around: outline_samples(&contours, 2.0 * APART),
-        samples,
-        radius: radius(&contours),
-        parts,
-        central: true,
-    }
+    let silhouette = Silhouette::new(&parts);
+    Art::of_size("ball".into(), true, vec!["ball".into()], parts, &silhouette)
 }
 
 #[cfg(test)]

@@ -34,6 +34,8 @@ const SHORTER: f64 = 0.87;
 const SLENDER: f64 = 13.0;
 /// And at most so many times.
 const LONGEST_WIDTHS: f64 = 75.0;
+/// Both sides of a stem, in the order they are tried.
+const SIDES: [f64; 2] = [1.0, -1.0];
 /// Forks of one stem are at least this many widths apart on one side.
 const FORK_WIDTHS: f64 = 3.0;
 
@@ -75,12 +77,11 @@ struct Site {
     side: f64,
 }
 
-/// A site and the length to try there next, the longest first.
+/// Twice the index of a site, one more for its other side, and the length to try there next, the longest first.
 #[derive(Clone, Copy, Debug)]
 struct Offer {
     length: f64,
-    order: usize,
-    site: Site,
+    site: usize,
 }
 
 impl PartialEq for Offer {
@@ -99,7 +100,7 @@ impl PartialOrd for Offer {
 
 impl Ord for Offer {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.length.total_cmp(&other.length).then(other.order.cmp(&self.order))
+        self.length.total_cmp(&other.length).then(other.site.cmp(&self.site))
     }
 }
 
@@ -159,10 +160,12 @@ impl<'a> Plant<'a> {
         let tight = stem.nodes.iter().find(|node| node.curvature.abs() * stem.width(node.s) > TIGHT);
         stem.end = tight.map_or(stem.length(), |node| node.s).max(0.5 * stem.length());
         let gap = self.sizes.gap;
-        for disc in discs(&stem, self.cells.size()) {
+        // Discs may be as far apart as they are large: `apart` makes up for it.
+        let width = stem.width(0.5 * stem.end);
+        for disc in discs(&stem, self.cells.size().max(0.4 * width)) {
             self.cells.claim(id, disc.at, disc.radius, disc.apart, disc.s);
         }
-        for disc in discs(&stem, self.cells.size().max(0.6 * gap)) {
+        for disc in discs(&stem, self.cells.size().max(0.4 * width + 0.6 * gap)) {
             self.cells.claim_gap(id, disc.at, disc.radius + gap, disc.apart, disc.s);
         }
         self.stems.push(stem);
@@ -188,11 +191,10 @@ impl<'a> Plant<'a> {
 
     /// The longest first, wherever there is room.
     fn branch_by_length(&mut self, most: usize, mut go_on: impl FnMut(f64) -> bool) -> bool {
-        let mut heap = BinaryHeap::new();
-        let mut order = 0;
+        let (mut heap, mut sites) = (BinaryHeap::new(), Vec::new());
         // Stems from before have had their turn.
         for parent in self.grown..self.stems.len() {
-            self.offer(parent, &mut heap, &mut order);
+            self.offer(parent, &mut heap, &mut sites);
         }
         let mut forks: Vec<Vec<(f64, f64)>> = vec![Vec::new(); self.stems.len()];
         let mut popped = 0;
@@ -202,7 +204,8 @@ impl<'a> Plant<'a> {
             if popped % ASK_EVERY == 0 && !go_on(self.stems.len() as f64 / most as f64) {
                 return false;
             }
-            let site = offer.site;
+            let mut site: Site = sites[offer.site / 2];
+            site.side = SIDES[offer.site % 2];
             let stem = &self.stems[site.parent];
             let limit = of_level(&self.params.branches, stem.level).unwrap_or(0.0) as usize;
             let apart = FORK_WIDTHS * (stem.width(site.s) + self.sizes.gap);
@@ -238,7 +241,7 @@ impl<'a> Plant<'a> {
                     if self.stems.len() >= most {
                         return false;
                     }
-                    self.offer(index, &mut heap, &mut order);
+                    self.offer(index, &mut heap, &mut sites);
                 }
                 None => heap.push(Offer { length: length * SHORTER, ..offer }),
             }
@@ -247,7 +250,7 @@ impl<'a> Plant<'a> {
     }
 
     /// Places on a stem, with the longest that may leave there.
-    fn offer(&self, parent: usize, heap: &mut BinaryHeap<Offer>, order: &mut usize) {
+    fn offer(&self, parent: usize, heap: &mut BinaryHeap<Offer>, sites: &mut Vec<Site>) {
         let stem = &self.stems[parent];
         if stem.level + 1 >= self.params.levels {
             return;
@@ -258,11 +261,9 @@ impl<'a> Plant<'a> {
         let mut s = if stem.parent.is_some() { (0.06 * length).max(2.0 * step) } else { 0.6 * step };
         while s < 0.96 * length {
             let (start, longest) = (stem.at(s), self.longest(parent, s));
-            for side in [1.0, -1.0] {
-                let site = Site { parent, start, s, side };
-                *order += 1;
-                heap.push(Offer { length: longest, order: *order, site });
-            }
+            let site = 2 * sites.len();
+            heap.extend([site, site + 1].map(|site| Offer { length: longest, site }));
+            sites.push(Site { parent, start, s, side: SIDES[0] });
             s += step;
         }
     }
@@ -407,11 +408,20 @@ impl<'a> Plant<'a> {
         let n = form.nodes.len();
         (1..LOOKS).rev().any(|k| {
             let node = &form.nodes[k * n / LOOKS];
-            let owner = self.cells.owner(pose.point(node.p));
-            owner != Owner::FREE
-                && owner.id() != Some(fork.id)
+            let at = pose.point(node.p);
+            if self.cells.is_free(at) {
+                return false;
+            }
+            let owner = self.cells.owner(at);
+            owner.id() != Some(fork.id)
                 && !(self.params.plait && owner != Owner::OUTSIDE)
         })
+    }
+
+    /// The same look for a curl that leaves no stem: true if any of it is taken.
+    pub fn is_taken(&self, form: &Form, pose: &Pose) -> bool {
+        let step = (form.nodes.len() / 14).max(1);
+        form.nodes.iter().rev().step_by(step).any(|node| !self.cells.is_free(pose.point(node.p)))
     }
 
     /// B at a place, as a multiple of the constant field.
@@ -489,7 +499,7 @@ impl<'a> Plant<'a> {
             }
             crossing = at_other.is_some();
             before = node.s;
-            next = node.s + 0.9 * size.max(0.5 * half);
+            next = node.s + 0.9 * size.max(half);
             if is_end {
                 break;
             }

@@ -33,7 +33,7 @@ use crate::progress::Progress;
 use crate::rng::Rng;
 use crate::shapes::Shapes;
 use artwork::Layers;
-use cells::{Cells, Owner};
+use cells::Cells;
 use clip_art::Library;
 use grow::Plant;
 use kurbo::Point;
@@ -41,6 +41,7 @@ use params::Sizes;
 use particle::Charge;
 use rinceau_format::{Artwork, Error, Guide, Scene};
 use std::collections::BTreeMap;
+use start::Ground;
 use stem::Stem;
 
 /// Stems of one container at most.
@@ -50,7 +51,7 @@ pub const MOST_NODES: usize = 2000;
 /// Main stems of one container that start by themselves, at most.
 const MOST_STARTS: usize = 200;
 /// Cells of one container at most; with more the same ornament takes longer and no other shape.
-const MOST_CELLS: f64 = 6e6;
+const MOST_CELLS: f64 = 4e6;
 
 /// Grows a vine in every container of a scene.
 ///
@@ -184,13 +185,14 @@ impl Container<'_> {
         let forks = self.library.choices(&params.forks, params.levels)?;
         let tips = self.library.choices(&params.tips, params.levels)?;
         progress.step("cells", 0.0);
-        let Some((rough, inradius)) = self.rough_cells() else { return Ok(None) };
+        let Some(ground) = self.ground() else { return Ok(None) };
+        let inradius = ground.inradius;
         let sizes = Sizes::new(params, self.shapes.areas[self.index], inradius, self.scene.px_per_unit);
         let Some(cells) = self.cells(params, &sizes) else { return Ok(None) };
         let mut plant =
             Plant::new((params, &sizes), (self.library, &charge), (forks, tips), cells, rng.fork());
         progress.step("stem", 0.0);
-        self.start(&mut plant, (&rough, inradius), rng)?;
+        self.start(&mut plant, &ground, rng)?;
         let mut finished = true;
         // Where a large place stays empty another stem starts, smaller as the place is.
         for _ in 0..MOST_STARTS {
@@ -200,11 +202,14 @@ impl Container<'_> {
                 break;
             }
             progress.step("stem", 0.0);
-            let left = rough.less(&plant.cells).inradius();
+            let free = ground.less(&plant.cells);
+            let left = free.inradius;
             if left < (0.42 * inradius).min(14.0 * sizes.width) || left < 3.5 * sizes.width {
                 break;
             }
-            let Some(stem) = start::wander(&plant, &rough, (None, start::TRIES[1]), rng) else { break };
+            let Some(stem) = start::wander(&plant, (&ground, &free), (None, start::TRIES[1]), rng) else {
+                break;
+            };
             plant.add_main(stem);
         }
         finished &= plant.place_leaves(|done| progress.step("leaves", done));
@@ -216,15 +221,12 @@ impl Container<'_> {
         Ok(Some(finished))
     }
 
-    /// A few cells, for a first look, and the radius of the largest circle in them. `None` if
-    /// there is no inside.
-    fn rough_cells(&self) -> Option<(Cells, f64)> {
+    /// A few cells, for a first look. `None` if there is no inside.
+    fn ground(&self) -> Option<Ground> {
         const CELLS: f64 = 4e4;
         let region = self.shapes.free(self.index, 0.0, 0.0)?;
         let size = Cells::size_for(region.bounds().area(), 0.0, CELLS);
-        let cells = Cells::new(&region, size, None);
-        let inradius = cells.inradius();
-        (inradius > 0.0).then_some((cells, inradius))
+        Some(Ground::new(Cells::new(&region, size, None))).filter(|ground| ground.inradius > 0.0)
     }
 
     /// The free cells.
@@ -239,12 +241,7 @@ impl Container<'_> {
 
     /// Plants the main stems: those that were drawn, or from the seeds, or one that starts by
     /// itself.
-    fn start(
-        &mut self,
-        plant: &mut Plant,
-        (rough, inradius): (&Cells, f64),
-        rng: &mut Rng,
-    ) -> Result<(), Error> {
+    fn start(&mut self, plant: &mut Plant, ground: &Ground, rng: &mut Rng) -> Result<(), Error> {
         let repeat = plant.params.repeat;
         let taper = plant.taper(plant.sizes.width);
         let mut drawn: Vec<Stem> = Vec::new();
@@ -260,12 +257,12 @@ impl Container<'_> {
             }
         }
         let seeds =
-            self.scene.seeds.iter().map(|seed| seed.at).filter(|&at| plant.cells.owner(at) == Owner::FREE);
+            self.scene.seeds.iter().map(|seed| seed.at).filter(|&at| plant.cells.is_free(at));
         let mut seeds: Vec<Option<Point>> = seeds.map(Some).collect();
         self.planned = !drawn.is_empty() || !seeds.is_empty() || plant.params.stem == "curl";
         if drawn.is_empty() && seeds.is_empty() {
             if repeat {
-                drawn.extend(start::wave(plant, self.shapes.span(self.index), inradius));
+                drawn.extend(start::wave(plant, self.shapes.span(self.index), ground.inradius));
             }
             if drawn.is_empty() {
                 seeds.push(None);
@@ -287,10 +284,10 @@ impl Container<'_> {
         for seed in seeds {
             let longest = plant.sizes.length[0];
             let stem = if plant.params.stem == "curl" {
-                start::curl(plant, rough, seed, longest)
+                start::curl(plant, ground, seed, longest)
             } else {
-                start::wander(plant, rough, (seed, start::TRIES[0]), rng)
-                    .or_else(|| start::curl(plant, rough, seed, longest))
+                start::wander(plant, (ground, &ground.less(&plant.cells)), (seed, start::TRIES[0]), rng)
+                    .or_else(|| start::curl(plant, ground, seed, longest))
             };
             if let Some(stem) = stem {
                 plant.add_main(stem);

@@ -83,11 +83,11 @@ fn nodes(cubics: &[CubicBez]) -> Vec<Node> {
 }
 
 /// One curl from a place (or from the bottom of the shape) upwards, as long as fits.
-pub(super) fn curl(plant: &Plant, rough: &Cells, seed: Option<Point>, longest: f64) -> Option<Stem> {
+pub(super) fn curl(plant: &Plant, ground: &Ground, seed: Option<Point>, longest: f64) -> Option<Stem> {
     let side = if plant.params.curl == "right" { 1.0 } else { -1.0 };
     let starts: Vec<Point> = match seed {
         Some(at) => vec![at],
-        None => bottom(rough, plant.sizes.edge + plant.sizes.width),
+        None => bottom(ground, plant.sizes.edge + plant.sizes.width),
     };
     let form = plant.form(0);
     let taper = plant.taper(plant.sizes.width);
@@ -109,10 +109,9 @@ pub(super) fn curl(plant: &Plant, rough: &Cells, seed: Option<Point>, longest: f
 }
 
 /// Places along the bottom of the free cells, from the middle outwards.
-fn bottom(cells: &Cells, from_wall: f64) -> Vec<Point> {
-    let (clear, _) = cells.clearances();
-    let need = (from_wall / cells.size()).powi(2);
-    let free: Vec<Point> = (0..clear.len()).filter(|&i| clear[i] > need).map(|i| cells.middle(i)).collect();
+fn bottom(Ground { cells, clear, .. }: &Ground, from_wall: f64) -> Vec<Point> {
+    let free: Vec<Point> =
+        (0..clear.len()).filter(|&i| clear[i] > from_wall).map(|i| cells.middle(i)).collect();
     let Some(&first) = free.first() else { return Vec::new() };
     let bounds = free.iter().fold(Rect::from_points(first, first), |bounds, &p| bounds.union_pt(p));
     (0..=6)
@@ -149,11 +148,35 @@ pub(super) fn wave(plant: &Plant, (left, width): (f64, f64), inradius: f64) -> O
     part_inside(&plant.cells, &stem).filter(|part| part.length() > 0.99 * stem.length())
 }
 
+/// A few cells, for a first look at what is free.
+pub(super) struct Ground {
+    pub cells: Cells,
+    /// Distance from each cell to the next thing, in user units.
+    clear: Vec<f64>,
+    columns: usize,
+    /// Radius of the largest circle that is free.
+    pub inradius: f64,
+}
+
+impl Ground {
+    pub fn new(cells: Cells) -> Self {
+        let (mut clear, columns) = cells.clearances();
+        clear.iter_mut().for_each(|d| *d = d.sqrt() * cells.size());
+        let inradius = clear.iter().copied().fold(0.0, f64::max);
+        Ground { cells, clear, columns, inradius }
+    }
+
+    /// What of it is left.
+    pub fn less(&self, taken: &Cells) -> Self {
+        Ground::new(self.cells.less(taken))
+    }
+}
+
 /// What a shape offers a wandering particle: its free area in squares.
 struct Country<'a> {
     cells: &'a Cells,
     /// Distance to the next thing, in user units.
-    clear: Vec<f64>,
+    clear: &'a [f64],
     /// Side of a square in cells.
     coarse: usize,
     columns: usize,
@@ -163,9 +186,7 @@ struct Country<'a> {
 }
 
 impl<'a> Country<'a> {
-    fn new(cells: &'a Cells, reach: f64) -> Self {
-        let (squared, columns) = cells.clearances();
-        let clear: Vec<f64> = squared.into_iter().map(|d| d.sqrt() * cells.size()).collect();
+    fn new(&Ground { ref cells, ref clear, columns, .. }: &'a Ground, reach: f64) -> Self {
         let coarse = ((reach / 4.0 / cells.size()) as usize).max(1);
         let width = columns.div_ceil(coarse);
         let mut free = vec![false; width * (clear.len() / columns).div_ceil(coarse)];
@@ -215,27 +236,25 @@ impl<'a> Country<'a> {
     }
 }
 
-/// A stem that finds its way through what is free. `seed` is where it starts, if the artist
-/// says.
+/// A stem that finds its way through what is still free of a shape. `seed` is where it starts,
+/// if the artist says.
 pub(super) fn wander(
     plant: &Plant,
-    rough: &Cells,
+    (whole, free): (&Ground, &Ground),
     (seed, tries): (Option<Point>, usize),
     rng: &mut Rng,
 ) -> Option<Stem> {
-    let free = rough.less(&plant.cells);
-    let inradius = free.inradius();
+    let inradius = free.inradius;
     let reach = 0.95 * inradius;
-    let country = Country::new(&free, reach);
+    let country = Country::new(free, reach);
     let width = plant.sizes.width;
     // It grows from the wall, not from the middle of the air or from another plant.
-    let walls = Country::new(rough, reach);
     let starts: Vec<Point> = (0..country.clear.len())
         .filter(|&i| {
-            let from_wall = walls.clear[i] - plant.sizes.edge - width;
-            from_wall > 0.0 && from_wall < 2.5 * rough.size() && country.clear[i] > width
+            let from_wall = whole.clear[i] - plant.sizes.edge - width;
+            from_wall > 0.0 && from_wall < 2.5 * whole.cells.size() && country.clear[i] > width
         })
-        .map(|i| rough.middle(i))
+        .map(|i| whole.cells.middle(i))
         .collect();
     let bounds = starts.iter().fold(Rect::from_points(*starts.first()?, starts[0]), |b, &p| b.union_pt(p));
     let mut best: Option<(f64, Vec<Node>)> = None;
@@ -351,7 +370,8 @@ fn curled(plant: &Plant, stem: Stem, longest: f64) -> Stem {
                             || own.p.distance(node.p) > 2.5 * width + plant.sizes.gap
                     })
                 };
-                let free = form.nodes.iter().step_by(3).all(|node| apart(&pose.node(node)));
+                let free = !plant.is_taken(form, &pose)
+                    && form.nodes.iter().step_by(3).all(|node| apart(&pose.node(node)));
                 let crosses_nothing = |met: Vec<super::grow::Met>| met.is_empty();
                 if free && plant.way(nodes, form.length() * length, &taper, None).is_some_and(crosses_nothing)
                 {

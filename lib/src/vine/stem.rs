@@ -241,14 +241,23 @@ fn append(edge: &[Edge], tolerance: f64, path: &mut BezPath) {
         }
         let cubic = cubic(i, j);
         let h = edge[j].s - edge[i].s;
-        (i + 1..j).all(|k| cubic.eval((edge[k].s - edge[i].s) / h).distance(edge[k].p) <= tolerance)
+        let off = |k: usize| cubic.eval((edge[k].s - edge[i].s) / h).distance_squared(edge[k].p);
+        (i + 1..j).all(|k| off(k) <= tolerance * tolerance)
     };
-    let mut i = 0;
-    while i + 1 < edge.len() {
-        let mut j = i + 1;
-        while j + 1 < edge.len() && fits(i, j + 1) {
-            j += 1;
+    let last = edge.len().saturating_sub(1);
+    let (mut i, mut span) = (0, 1);
+    while i < last {
+        // About as many as the last did.
+        let mut j = (i + span).min(last);
+        while j > i + 1 && !fits(i, j) {
+            j -= 1;
         }
+        if j >= i + span || j == i + 1 {
+            while j < last && fits(i, j + 1) {
+                j += 1;
+            }
+        }
+        span = j - i;
         let cubic = cubic(i, j);
         path.curve_to(cubic.p1, cubic.p2, cubic.p3);
         i = j;

@@ -87,6 +87,9 @@ impl Plant<'_> {
 
     /// From where on a stem stays within a radius of a place near its end.
     fn own_end(&self, stem: usize, end: f64, at: Point, radius: f64) -> f64 {
+        if radius == 0.0 {
+            return end;
+        }
         let stem = &self.stems[stem];
         let outside = |node: &&Node| node.s <= end && node.p.distance(at) > radius;
         let mut from = stem.nodes.iter().rev().find(outside).map_or(0.0, |node| node.s);
@@ -141,8 +144,13 @@ impl Plant<'_> {
                 let near = 1.5 * (stem.width(s) + self.sizes.gap);
                 let forks =
                     |side: f64| forks[index].iter().any(|&(at, own)| own == side && (at - s).abs() < near);
-                let free = [1.0, -1.0].into_iter().filter(|&side| !forks(side));
-                sites.extend(free.map(|side| self.beside(index, s, side)));
+                let mut site = self.beside(index, s, 1.0);
+                for side in super::SIDES {
+                    if !forks(side) {
+                        site.side = side;
+                        sites.push(site);
+                    }
+                }
             }
         }
         // Places near each other one after the other, as memory likes it.
@@ -193,7 +201,7 @@ impl Plant<'_> {
         LEAN.into_iter().any(|lean| {
             let along = rotated(site.node.along, site.side * lean);
             let edge = site.node.p + site.side * 0.5 * site.width * left_of(site.node.along);
-            self.cells.owner(edge + 0.75 * size * along) == Owner::FREE
+            self.cells.is_free(edge + 0.75 * size * along)
         })
     }
 
@@ -220,7 +228,7 @@ impl Plant<'_> {
                 let along = rotated(node.along, side * lean);
                 // A flower sits beside the stem, not on it.
                 let origin = if central { attached + 0.96 * radius * size * along } else { attached };
-                let taken = |&share: &f64| self.cells.owner(attached + share * size * along) != Owner::FREE;
+                let taken = |&share: &f64| !self.cells.is_free(attached + share * size * along);
                 if LOOKS.iter().any(taken) {
                     continue;
                 }
