@@ -165,31 +165,38 @@ impl Grid {
     /// grid, until `visit` says false. True if it never did.
     #[inline(always)]
     fn near(&self, at: Point, radius: f64, mut visit: impl FnMut(Option<Run>) -> bool) -> bool {
-        let x = (at.x - self.origin.x) * self.per_unit - 0.5;
-        let y = (at.y - self.origin.y) * self.per_unit - 0.5;
+        // Far from zero, where whole numbers are found by cutting off what follows the point.
+        const BIAS: f64 = 1048576.0;
+        let x = (at.x - self.origin.x) * self.per_unit - 0.5 + BIAS;
+        let y = (at.y - self.origin.y) * self.per_unit - 0.5 + BIAS;
         let r = radius * self.per_unit;
-        for row in -floor(r - y)..floor(y + r) + 1 {
+        let (top, bottom) = ((y - r) as i64 + 1, (y + r) as i64);
+        let (left, right) = ((x - r) as i64 + 1, (x + r) as i64);
+        let bias = BIAS as i64;
+        let inside = left >= bias
+            && right < bias + self.columns as i64
+            && top >= bias
+            && bottom < bias + self.rows as i64;
+        for row in top..bottom + 1 {
             let dy = row as f64 - y;
             let half = (r * r - dy * dy).max(0.0).sqrt();
-            let (from, to) = (-floor(half - x), floor(x + half));
-            let mut at = from;
-            while at <= to {
-                let (run, next) = self.run(row, at, to);
+            let (mut from, to) = ((x - half) as i64 + 1 - bias, (x + half) as i64 - bias);
+            while from <= to {
+                let (run, next) = self.run(row - bias, from, to, inside);
                 if !visit(run) {
                     return false;
                 }
-                at = next;
+                from = next;
             }
         }
         true
     }
 
     /// The first cells of a row, from a column on, that are neighbours on the grid; `None` if
-    /// they are beyond it. And the column where to go on.
+    /// they are beyond it. And the column where to go on. Most are well `inside`.
     #[inline(always)]
-    fn run(&self, row: i64, from: i64, to: i64) -> (Option<Run>, i64) {
-        // Most are well within the grid.
-        if row >= 0 && row < self.rows as i64 && from >= 0 && to < self.columns as i64 {
+    fn run(&self, row: i64, from: i64, to: i64, inside: bool) -> (Option<Run>, i64) {
+        if inside {
             return (Some(Run { row: row as usize, from: from as usize, to: to as usize }), to + 1);
         }
         self.run_at_edge(row, from, to)

@@ -30,6 +30,8 @@ pub(super) struct Art {
     samples: Vec<(Point, f64)>,
     /// Half as many samples of the outline alone.
     around: Vec<(Point, f64)>,
+    /// Those of the samples that lie within.
+    inside: Vec<(Point, f64)>,
     /// True if it grows around its origin, as a flower does.
     pub central: bool,
 }
@@ -99,13 +101,15 @@ impl Art {
         // What is farthest from the stem meets others first.
         outline.sort_by(|p, q| q.to_vec2().hypot2().total_cmp(&p.to_vec2().hypot2()));
         let outline = outline.into_iter().map(|p| (p, APART));
-        let inside = silhouette.inside().into_iter().map(|p| (p, 0.9 * INSIDE));
+        let inside: Vec<(Point, f64)> =
+            silhouette.inside().into_iter().map(|p| (p, 0.9 * INSIDE)).collect();
         Art {
             id,
             builtin,
             names,
             radius,
-            samples: outline.chain(inside).collect(),
+            samples: outline.chain(inside.iter().copied()).collect(),
+            inside,
             around,
             central: middle < 0.2 * silhouette.bounds.size().max_side(),
             parts,
@@ -128,12 +132,19 @@ impl Art {
 
     /// Claims what it covers.
     pub fn claim(&self, pose: Affine, size: f64, cells: &mut Cells, id: u32, gap: f64) {
+        // Near where it is attached it lies over the gap of its stem, which allows too much.
+        const BASE: f64 = 0.5;
         for &(p, apart) in &self.samples {
-            cells.claim(id, pose * p, 0.0, apart * size, 0.0);
+            if self.central || p.to_vec2().hypot2() < BASE * BASE {
+                cells.claim(id, pose * p, 0.0, apart * size, 0.0);
+            }
         }
         // The gap is wide against the samples of the outline: some of them are enough.
-        for &(p, apart) in self.around.iter() {
+        for &(p, apart) in &self.around {
             cells.claim_gap(id, pose * p, gap, apart * size, 0.0);
+        }
+        for &(p, apart) in &self.inside {
+            cells.claim_gap(id, pose * p, 0.0, apart * size, 0.0);
         }
     }
 }

@@ -65,6 +65,8 @@ pub(super) struct Plant<'a> {
     tips: Choices,
     rng: Rng,
     noise: Vec<(Vec2, f64)>,
+    /// [`place::LEAN`] as unit vectors.
+    leans: [Vec2; 4],
 }
 
 /// A place where a branch may leave.
@@ -146,6 +148,7 @@ impl<'a> Plant<'a> {
             tips,
             rng,
             noise,
+            leans: place::LEAN.map(unit),
         }
     }
 
@@ -449,62 +452,67 @@ impl<'a> Plant<'a> {
         fork: Option<Fork>,
     ) -> Option<Vec<Met>> {
         let size = self.cells.size();
-        let mut left = fork.is_none();
-        let (mut next, mut before) = (0.0, 0.0);
-        let mut met: Vec<Met> = Vec::new();
-        let mut crossing = false;
+        let mut way = Way { left: fork.is_none(), before: 0.0, met: Vec::new(), crossing: false };
+        let mut last: Option<Node> = None;
         for node in nodes {
             let half = taper.at(node.s / length) / 2.0;
-            if node.s < next && node.s < length {
+            let step = size.max(half);
+            if last.is_some_and(|last| node.s < last.s + 0.9 * step) && node.s < length {
                 continue;
             }
-            // A curl ends where it gets tighter than it is wide.
-            let is_end = node.s > 0.5 * length && node.curvature.abs() * 2.0 * half > TIGHT;
-            let (mut at_parent, mut at_other) = (false, None);
-            let apart = node.s - before;
-            let free = self.cells.allows(node.p, half, apart, |owner, place| {
-                if let Some(fork) = fork.filter(|fork| !left && owner.id() == Some(fork.id)) {
-                    at_parent = true;
-                    return (place - fork.s).abs() <= fork.reach && node.s <= fork.reach;
-                }
-                let other = owner.id().filter(|_| self.params.plait && left);
-                let same = other.is_some() && at_other.is_none_or(|(id, _)| Some(id) == other);
-                at_other = at_other.or(other.map(|id| (id, place)));
-                same
-            });
-            if !free {
-                return None;
-            }
-            left |= !at_parent;
-            if let Some((id, place)) = at_other {
-                let stem = self.ids.iter().position(|&own| own == id)?;
-                if !self.is_crossed(
-                    stem,
-                    place,
-                    &node,
-                    (node.s, length),
-                    crossing.then(|| met.last()).flatten(),
-                ) {
+            let from = last.unwrap_or(node);
+            let pieces = ((node.s - from.s) / (1.3 * step)).ceil().max(1.0);
+            for k in 1..=pieces as usize {
+                let node = from.between(&node, k as f64 / pieces);
+                if !self.goes_on(&mut way, &node, half, length, fork) {
                     return None;
                 }
-                let side = plait::side(&self.stems[stem], place, node.p);
-                match met.last_mut().filter(|_| crossing) {
-                    Some(last) => (last.s, last.place, last.after) = (node.s, place, side),
-                    None => met.push(Met { stem, s: node.s, place, before: side, after: side }),
-                }
             }
-            // It has to come out on the other side.
-            if crossing && at_other.is_none() && met.last().is_some_and(|met| met.before * met.after >= 0.0) {
-                return None;
-            }
-            crossing = at_other.is_some();
-            before = node.s;
-            next = node.s + 0.9 * size.max(half);
-            if is_end {
+            // A curl ends where it gets tighter than it is wide.
+            if node.s > 0.5 * length && node.curvature.abs() * 2.0 * half > TIGHT {
                 break;
             }
+            last = Some(node);
         }
-        (left && !crossing).then_some(met)
+        (way.left && !way.crossing).then_some(way.met)
+    }
+
+    /// True if a curve may come to a place.
+    #[inline]
+    fn goes_on(&self, way: &mut Way, node: &Node, half: f64, length: f64, fork: Option<Fork>) -> bool {
+        let (mut at_parent, mut at_other) = (false, None);
+        let left = way.left;
+        let free = self.cells.allows(node.p, half, node.s - way.before, |owner, place| {
+            if let Some(fork) = fork.filter(|fork| !left && owner.id() == Some(fork.id)) {
+                at_parent = true;
+                return (place - fork.s).abs() <= fork.reach && node.s <= fork.reach;
+            }
+            let other = owner.id().filter(|_| self.params.plait && left);
+            let same = other.is_some() && at_other.is_none_or(|(id, _)| Some(id) == other);
+            at_other = at_other.or(other.map(|id| (id, place)));
+            same
+        });
+        if !free {
+            return false;
+        }
+        way.left |= !at_parent;
+        way.before = node.s;
+        let was_crossing = std::mem::replace(&mut way.crossing, at_other.is_some());
+        let Some((id, place)) = at_other else {
+            // It has to come out on the other side.
+            return !was_crossing || way.met.last().is_none_or(|met| met.before * met.after < 0.0);
+        };
+        let Some(stem) = self.ids.iter().position(|&own| own == id) else { return false };
+        let last = way.met.last_mut().filter(|_| was_crossing);
+        if !self.is_crossed(stem, place, node, (node.s, length), last.as_deref()) {
+            return false;
+        }
+        let side = plait::side(&self.stems[stem], place, node.p);
+        match last {
+            Some(last) => (last.s, last.place, last.after) = (node.s, place, side),
+            None => way.met.push(Met { stem, s: node.s, place, before: side, after: side }),
+        }
+        true
     }
 
     /// True if a place on a stem is too near a crossing for anything to grow there.
@@ -586,6 +594,18 @@ impl<'a> Plant<'a> {
     pub fn form(&self, level: usize) -> &Form {
         &self.forms[level]
     }
+}
+
+/// What is known of a curve up to some place.
+struct Way {
+    /// True once it has left its parent.
+    left: bool,
+    /// Arc length of the place before.
+    before: f64,
+    /// The stems that it crosses.
+    met: Vec<Met>,
+    /// True while it is over another stem.
+    crossing: bool,
 }
 
 /// Another stem on a curve's way.

@@ -22,7 +22,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// for ever.
 const END: f64 = 0.006;
 /// Nodes are at most this far apart, in lengths of the curve, and in radians.
-const STEP: f64 = 1.0 / 96.0;
+const STEP: f64 = 1.0 / 60.0;
 const STEP_ANGLE: f64 = 0.16;
 /// Samples of a charge without a closed form.
 const SAMPLES: usize = 512;
@@ -105,6 +105,22 @@ pub(super) struct Node {
 #[derive(Clone, Debug)]
 pub(super) struct Form {
     pub nodes: Vec<Node>,
+}
+
+impl Node {
+    /// Between two nodes, on a straight line.
+    pub fn between(&self, to: &Node, t: f64) -> Node {
+        if t == 1.0 {
+            return *to;
+        }
+        let mix = |a: f64, b: f64| a + t * (b - a);
+        Node {
+            s: mix(self.s, to.s),
+            p: self.p.lerp(to.p, t),
+            along: self.along.lerp(to.along, t),
+            curvature: mix(self.curvature, to.curvature),
+        }
+    }
 }
 
 impl Form {

@@ -12,7 +12,7 @@ use crate::geom::polyline::left_of;
 use kurbo::{Affine, Point, Vec2};
 
 /// Angles between a stem and what grows beside it, in the order they are tried.
-const LEAN: [f64; 4] = [0.8, 1.1, 0.55, 1.35];
+pub(super) const LEAN: [f64; 4] = [0.8, 1.1, 0.55, 1.35];
 
 /// A place beside a stem where clip art may grow.
 #[derive(Clone, Copy, Debug)]
@@ -96,7 +96,7 @@ impl Plant<'_> {
         // Nodes may be far apart: halve the way to the next, which is inside.
         let next = stem.nodes.iter().find(|node| node.s > from).map_or(end, |node| node.s.min(end));
         let mut to = next;
-        for _ in 0..12 {
+        for _ in 0..8 {
             let middle = f64::midpoint(from, to);
             if stem.at(middle).p.distance(at) > radius {
                 from = middle;
@@ -198,9 +198,9 @@ impl Plant<'_> {
 
     /// True if the middle of something of this size beside a stem is free, some way it may lean.
     fn may_hold(&self, site: &Beside, size: f64) -> bool {
-        LEAN.into_iter().any(|lean| {
-            let along = rotated(site.node.along, site.side * lean);
-            let edge = site.node.p + site.side * 0.5 * site.width * left_of(site.node.along);
+        let edge = site.node.p + site.side * 0.5 * site.width * left_of(site.node.along);
+        self.leans.into_iter().any(|lean| {
+            let along = leant(site.node.along, lean, site.side);
             self.cells.is_free(edge + 0.75 * size * along)
         })
     }
@@ -222,10 +222,10 @@ impl Plant<'_> {
             let attached = node.p + side * (0.5 * width - 0.06 * size).max(0.0) * left_of(node.along);
             let (radius, central) = (self.library.arts[art].radius, self.library.arts[art].central);
             let base = 0.5 * width + 0.26 * size;
-            for lean in LEAN {
+            for lean in self.leans {
                 // A look along its middle first.
                 const LOOKS: [f64; 3] = [1.05, 0.75, 0.45];
-                let along = rotated(node.along, side * lean);
+                let along = leant(node.along, lean, side);
                 // A flower sits beside the stem, not on it.
                 let origin = if central { attached + 0.96 * radius * size * along } else { attached };
                 let taken = |&share: &f64| !self.cells.is_free(attached + share * size * along);
@@ -266,6 +266,11 @@ fn posed(at: Point, along: Vec2, size: f64, mirrored: bool) -> Affine {
 }
 
 fn rotated(v: Vec2, angle: f64) -> Vec2 {
-    let turn = unit(angle);
+    leant(v, unit(angle), 1.0)
+}
+
+/// Turned as far as a unit vector is from the x axis, to a side.
+fn leant(v: Vec2, turn: Vec2, side: f64) -> Vec2 {
+    let turn = Vec2::new(turn.x, side * turn.y);
     Vec2::new(turn.x * v.x - turn.y * v.y, turn.y * v.x + turn.x * v.y)
 }
