@@ -130,6 +130,8 @@ fn parameter(spec: &'static ParamSpec) -> Arg {
         .long(spec.name)
         .value_name(value)
         .help(help(spec))
+        // Numbers below zero look like options.
+        .allow_hyphen_values(true)
         .value_parser(ValueParser::from(check))
 }
 

@@ -46,12 +46,16 @@ impl Layers {
         self.add_stems(plant, tones[0], tolerance);
         // Built-in art has the tones of its container; what the artist drew is the same in all.
         let mut symbols: BTreeMap<usize, usize> = BTreeMap::new();
-        for placed in &plant.arts {
+        for (placed, shift) in plant.arts.iter().flat_map(|placed| {
+            let (x, reach) = (placed.pose.translation().x, library.arts[placed.art].radius * placed.size);
+            shifts(plant, x - reach, x + reach).into_iter().map(move |shift| (placed, shift))
+        }) {
             let art = &library.arts[placed.art];
+            let pose = shift * placed.pose;
             let group = if art.central { &mut self.flowers } else { &mut self.elements };
             if plant.params.copies {
-                let pose = Affine::IDENTITY;
-                let moved = |part: Part| Part { path: placed.pose * part.path, transform: pose, ..part };
+                let moved =
+                    |part: Part| Part { path: pose * part.path, transform: Affine::IDENTITY, ..part };
                 let parts = painted(art, placed.size, tones, decimals).into_iter().map(moved).collect();
                 group.items.push(Item::new(art.id.clone(), parts));
                 continue;
@@ -61,7 +65,7 @@ impl Layers {
                 self.symbols.push(Symbol { name, parts: painted(art, 1.0, tones, SYMBOL_DECIMALS) });
                 self.symbols.len() - 1
             });
-            group.items.push(Item::cloned(art.id.clone(), symbol, placed.pose));
+            group.items.push(Item::cloned(art.id.clone(), symbol, pose));
         }
     }
 
@@ -77,11 +81,18 @@ impl Layers {
             style.set("stroke-linecap", "round");
             style
         };
+        let shifted = |stem: &Stem| {
+            let (left, right) = stem.sides();
+            // What runs from end to end is joined already: all else is shorter.
+            let is_joined = plant.period.is_some_and(|period| right - left >= period);
+            if is_joined { vec![Affine::IDENTITY] } else { shifts(plant, left, right) }
+        };
         match plant.params.stems.as_str() {
             "lines" => {
                 for stem in &plant.stems {
-                    let style = line(stem.taper.start, tone);
-                    self.stems.items.push(item(name(stem), stem.centre_line(tolerance), style));
+                    let (path, style) = (stem.centre_line(tolerance), line(stem.taper.start, tone));
+                    let items = shifted(stem).into_iter().map(|by| item(name(stem), by * &path, style.clone()));
+                    self.stems.items.extend(items);
                 }
                 return;
             }
@@ -89,7 +100,8 @@ impl Layers {
                 let outlines: Vec<_> = plant
                     .stems
                     .iter()
-                    .flat_map(|stem| flatten(&stem.outline(tolerance), 4.0 * tolerance))
+                    .flat_map(|stem| shifted(stem).into_iter().map(|by| by * stem.outline(tolerance)))
+                    .flat_map(|outline| flatten(&outline, 4.0 * tolerance))
                     .map(|subpath| subpath.points)
                     .collect();
                 let mut path = BezPath::new();
@@ -105,13 +117,17 @@ impl Layers {
                 let mut order: Vec<&Stem> = plant.stems.iter().collect();
                 order.sort_by_key(|stem| std::cmp::Reverse(stem.level));
                 for stem in order {
-                    self.stems.items.push(item(name(stem), stem.outline(tolerance), Style::filled(tone)));
+                    let path = stem.outline(tolerance);
+                    let items = shifted(stem)
+                        .into_iter()
+                        .map(|by| item(name(stem), by * &path, Style::filled(tone)));
+                    self.stems.items.extend(items);
                 }
             }
         }
         for stem in &plant.stems {
             let style = line(plant.sizes.width / 20.0, "#ff0000");
-            self.centre_lines.items.push(item("spine", stem.centre_line(4.0 * tolerance), style));
+            self.centre_lines.items.push(item("spine", stem.centre_line(tolerance), style));
         }
     }
 
@@ -121,6 +137,17 @@ impl Layers {
         groups.retain(|group| !group.items.is_empty());
         (groups, self.symbols)
     }
+}
+
+/// Where something between two sides is drawn: in its place, and in what repeats also a period
+/// away if it lies over an end, so that a tile that is cut off there has no seam.
+fn shifts(plant: &Plant, left: f64, right: f64) -> Vec<Affine> {
+    let mut shifts = vec![Affine::IDENTITY];
+    if let Some((start, period)) = plant.cells.span() {
+        shifts.extend((left < start).then_some(Affine::translate((period, 0.0))));
+        shifts.extend((right > start + period).then_some(Affine::translate((-period, 0.0))));
+    }
+    shifts
 }
 
 /// Decimals of stroke widths in clip art of size 1.

@@ -408,9 +408,9 @@ impl Cells {
         (unframed, self.grid.columns)
     }
 
-    /// Width of what repeats sideways.
-    pub fn period(&self) -> Option<f64> {
-        (self.grid.wrap > 0).then_some(self.grid.wrap as f64 * self.grid.size)
+    /// Left end and width of what repeats sideways.
+    pub fn span(&self) -> Option<(f64, f64)> {
+        (self.grid.wrap > 0).then_some((self.grid.origin.x, self.grid.wrap as f64 * self.grid.size))
     }
 
     /// The middle of a cell.

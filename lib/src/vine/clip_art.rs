@@ -34,6 +34,8 @@ pub(super) struct Art {
     inside: Vec<(Point, f64)>,
     /// True if it grows around its origin, as a flower does.
     pub central: bool,
+    /// How far it reaches from its origin against its direction.
+    pub back: f64,
 }
 
 /// Clip art in its place.
@@ -111,6 +113,7 @@ impl Art {
             samples: outline.chain(inside.iter().copied()).collect(),
             inside,
             around,
+            back: silhouette.back(),
             central: middle < 0.2 * silhouette.bounds.size().max_side(),
             parts,
         }
@@ -264,6 +267,14 @@ impl Silhouette {
             (0.7, -0.7),
         ];
         covers(at) && DIRECTIONS.iter().all(|&(x, y)| covers(at + radius * Vec2::new(x, y)))
+    }
+
+    fn back(&self) -> f64 {
+        let mut x = self.bounds.x0;
+        while x < 0.0 && !self.is_inside(Point::new(x, 0.0), self.cell) {
+            x += self.cell;
+        }
+        (-x).max(0.0)
     }
 
     /// Samples along the edges, but for those within other parts.

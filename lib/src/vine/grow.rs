@@ -133,7 +133,7 @@ impl<'a> Plant<'a> {
             params,
             sizes,
             library,
-            period: cells.period(),
+            period: cells.span().map(|(_, width)| width),
             cells,
             forms: (0..params.levels).map(form).collect(),
             charge,
@@ -216,14 +216,7 @@ impl<'a> Plant<'a> {
             let close = |&(s, side): &(f64, f64)| {
                 (s - site.s).abs() < if side == site.side { 2.0 * apart } else { 0.5 * apart }
             };
-            // Nor where the base of a leaf lies within the stem.
-            let (width, gap) = (stem.width(site.s), self.sizes.gap);
-            let at_base = |&(s, size): &(f64, f64)| (s - site.s).abs() < 0.4 * size + width + gap;
-            if taken.len() >= limit
-                || taken.iter().any(close)
-                || self.is_near_crossing(site.parent, site.s)
-                || self.attached[site.parent].iter().any(at_base)
-            {
+            if taken.len() >= limit || taken.iter().any(close) || self.is_occupied(site.parent, site.s) {
                 continue;
             }
             // What a look rules out needs no turn of its own.
@@ -298,6 +291,9 @@ impl<'a> Plant<'a> {
                 let s = (i + 1) as f64 / (count + 1) as f64 * length;
                 let side = if i % 2 == 0 { first } else { -first };
                 let site = Site { parent, start: self.stems[parent].at(s), s, side };
+                if self.is_occupied(parent, s) {
+                    continue;
+                }
                 let longest = self.longest(parent, s);
                 if let Some((branch, crossings)) = self.fitting(&site, longest, self.shortest()) {
                     self.crossings = crossings;
@@ -482,13 +478,18 @@ impl<'a> Plant<'a> {
     fn goes_on(&self, way: &mut Way, node: &Node, half: f64, length: f64, fork: Option<Fork>) -> bool {
         let (mut at_parent, mut at_other) = (false, None);
         let left = way.left;
+        // Farther along the other stem is another winding of it.
+        let nearby = 4.0 * (half + self.sizes.width + self.sizes.gap);
+        let was_at = way.met.last().filter(|_| way.crossing).map(|met| met.place);
         let free = self.cells.allows(node.p, half, node.s - way.before, |owner, place| {
             if let Some(fork) = fork.filter(|fork| !left && owner.id() == Some(fork.id)) {
                 at_parent = true;
                 return (place - fork.s).abs() <= fork.reach && node.s <= fork.reach;
             }
             let other = owner.id().filter(|_| self.params.plait && left);
-            let same = other.is_some() && at_other.is_none_or(|(id, _)| Some(id) == other);
+            let same = other.is_some()
+                && at_other.is_none_or(|(id, at): (u32, f64)| Some(id) == other && (at - place).abs() < nearby)
+                && was_at.is_none_or(|at| (at - place).abs() < nearby);
             at_other = at_other.or(other.map(|id| (id, place)));
             same
         });
@@ -513,6 +514,14 @@ impl<'a> Plant<'a> {
             None => way.met.push(Met { stem, s: node.s, place, before: side, after: side }),
         }
         true
+    }
+
+    /// True if no branch may leave a stem at a place: another crosses it there, or the base of a
+    /// leaf lies within it.
+    fn is_occupied(&self, stem: usize, s: f64) -> bool {
+        let near = self.stems[stem].width(s) + self.sizes.gap;
+        let at_base = |&(at, size): &(f64, f64)| (at - s).abs() < 0.4 * size + near;
+        self.is_near_crossing(stem, s) || self.attached[stem].iter().any(at_base)
     }
 
     /// True if a place on a stem is too near a crossing for anything to grow there.
@@ -558,6 +567,12 @@ impl<'a> Plant<'a> {
         for met in met {
             let other = &self.stems[met.stem];
             let (s, place) = plait::meet(branch, met.s, other, met.place)?;
+            let gap = plait::GAP * self.sizes.gap;
+            if !plait::is_clean((branch, s), (other, place), gap)
+                || !plait::is_clean((other, place), (branch, s), gap)
+            {
+                return None;
+            }
             // The gaps of two crossings must not run into each other, nor into a fork.
             let apart = 3.0 * (other.width(place) + branch.width(s) + 2.0 * self.sizes.gap);
             let close = |stem: usize, at: f64| {

@@ -213,7 +213,7 @@ impl Container<'_> {
             plant.add_main(stem);
         }
         finished &= plant.place_leaves(|done| progress.step("leaves", done));
-        plait::cut(&mut plant.stems, &plant.crossings, 0.8 * sizes.gap);
+        plait::cut(&mut plant.stems, &plant.crossings, plait::GAP * sizes.gap);
         layers.add(&plant, self.library, container.fill.as_deref(), self.shapes.decimals());
         *counts.entry("stems".into()).or_insert(0.0) += plant.stems.len() as f64;
         *counts.entry("crossings".into()).or_insert(0.0) += plant.crossings.len() as f64;

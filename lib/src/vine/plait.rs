@@ -18,6 +18,9 @@ pub(super) struct Crossing {
 /// Sine of the least angle at which stems may cross.
 pub(super) const LEAST_SINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
+/// Room between the stems at a crossing, in gaps.
+pub(super) const GAP: f64 = 0.8;
+
 /// Which of the two is above at each crossing, so that every stem goes over and under in turn.
 /// `None` if there is no such way.
 pub(super) fn alternate(crossings: &[Crossing]) -> Option<Vec<usize>> {
@@ -69,15 +72,8 @@ pub(super) fn cut(stems: &mut [Stem], crossings: &[Crossing], gap: f64) {
     let Some(upper) = alternate(crossings) else { return };
     for (crossing, upper) in crossings.iter().zip(upper) {
         let ((over, s_over), (under, s_under)) = (crossing.at[upper], crossing.at[1 - upper]);
-        let (above, below) = (stems[over].at(s_over), stems[under].at(s_under));
-        let sine = below.along.cross(above.along);
-        let slant = sine.abs().max(0.1);
-        // The ends of the cut are straight; where the stems bend they need that much more room.
-        let across = stems[under].width(s_under) / (2.0 * slant);
-        let bow = across * across / 2.0 * (above.curvature.abs() + below.curvature.abs());
-        let half = (stems[over].width(s_over) / 2.0 + gap + bow) / slant;
-        let skew = below.along.dot(above.along) / if sine == 0.0 { 1.0 } else { sine };
-        stems[under].cuts.push(Cut { from: s_under - half, to: s_under + half, skew });
+        let cut = Cut::under((&stems[under], s_under), (&stems[over], s_over), gap);
+        stems[under].cuts.push(cut);
     }
     for stem in stems {
         stem.cuts.sort_by(|a, b| a.from.total_cmp(&b.from));
@@ -91,6 +87,57 @@ pub(super) struct Cut {
     pub to: f64,
     /// How much farther along the cut runs per unit to the left.
     pub skew: f64,
+}
+
+impl Cut {
+    /// The cut of a stem at a place where it goes under another.
+    fn under((below, s_below): (&Stem, f64), (above, s_above): (&Stem, f64), gap: f64) -> Self {
+        let (across, along) = (above.at(s_above), below.at(s_below));
+        let sine = along.along.cross(across.along);
+        let slant = sine.abs().max(0.1);
+        // The ends of the cut are straight; where the stems bend they need that much more room.
+        let reach = below.width(s_below) / (2.0 * slant);
+        let bow = reach * reach / 2.0 * (across.curvature.abs() + along.curvature.abs());
+        let half = (above.width(s_above) / 2.0 + gap + bow) / slant;
+        let skew = along.along.dot(across.along) / if sine == 0.0 { 1.0 } else { sine };
+        Cut { from: s_below - half, to: s_below + half, skew }
+    }
+}
+
+/// True if a stem that is cut to go under another keeps clear of it, whatever both do near the
+/// crossing, and nothing of the cut runs off the stem.
+pub(super) fn is_clean(below: (&Stem, f64), above: (&Stem, f64), gap: f64) -> bool {
+    const SAMPLES: i32 = 12;
+    /// Share of the gap that bends may take.
+    const KEPT: f64 = 0.4;
+    let cut = Cut::under(below, above, gap);
+    let ((below, _), (above, s_above)) = (below, above);
+    let (w, h) = (below.width(cut.from), above.width(s_above));
+    // Beyond the cut for some widths; the other stem is longer there, to be compared with.
+    let reach = cut.to - cut.from + 2.0 * (w + h);
+    let line: Vec<_> = (-2 * SAMPLES..=2 * SAMPLES)
+        .map(|k| s_above + f64::from(k) / f64::from(SAMPLES) * reach)
+        .filter(|s| (0.0..=above.end).contains(s))
+        .map(|s| (above.at(s).p, above.width(s) / 2.0))
+        .collect();
+    let clear = |at: kurbo::Point| {
+        line.windows(2).all(|pair| {
+            let half = pair[0].1.max(pair[1].1);
+            crate::geom::near::point_segment(at, pair[0].0, pair[1].0) > half + KEPT * gap
+        })
+    };
+    [(cut.from, -1.0), (cut.to, 1.0)].into_iter().all(|(end, way)| {
+        [-1.0, 0.0, 1.0].into_iter().all(|side| {
+            let end = end + side * cut.skew * below.width(end) / 2.0;
+            end > 0.0
+                && end < below.end
+                && (0..=SAMPLES).all(|k| {
+                    let s = end + way * f64::from(k) / f64::from(SAMPLES) * reach;
+                    let node = below.at(s.clamp(0.0, below.end));
+                    clear(node.p + side * below.width(s) / 2.0 * left_of(node.along))
+                })
+        })
+    })
 }
 
 /// Where two stems cross, near the places given.

@@ -87,10 +87,17 @@ impl Stem {
         Stem::new(self.level, self.parent, self.side, nodes.collect(), self.taper)
     }
 
+    /// Where it lies from left to right, its width included.
+    pub fn sides(&self) -> (f64, f64) {
+        let xs = || self.nodes.iter().map(|node| node.p.x);
+        let half = self.taper.start / 2.0;
+        (xs().fold(f64::INFINITY, f64::min) - half, xs().fold(f64::NEG_INFINITY, f64::max) + half)
+    }
+
     /// How far it reaches from left to right, its width included.
     pub fn span(&self) -> f64 {
-        let xs = || self.nodes.iter().map(|node| node.p.x);
-        xs().fold(f64::NEG_INFINITY, f64::max) - xs().fold(f64::INFINITY, f64::min) + self.taper.start
+        let (left, right) = self.sides();
+        right - left
     }
 
     /// Width at an arc length.

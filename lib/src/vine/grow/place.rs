@@ -220,14 +220,14 @@ impl Plant<'_> {
             let size = size * scale;
             // From within the stem, so that no light falls between.
             let attached = node.p + side * (0.5 * width - 0.06 * size).max(0.0) * left_of(node.along);
-            let (radius, central) = (self.library.arts[art].radius, self.library.arts[art].central);
+            let (back, central) = (self.library.arts[art].back, self.library.arts[art].central);
             let base = 0.5 * width + 0.26 * size;
             for lean in self.leans {
                 // A look along its middle first.
                 const LOOKS: [f64; 3] = [1.05, 0.75, 0.45];
                 let along = leant(node.along, lean, side);
                 // A flower sits beside the stem, not on it.
-                let origin = if central { attached + 0.96 * radius * size * along } else { attached };
+                let origin = if central { attached + 0.96 * back * size * along } else { attached };
                 let taken = |&share: &f64| !self.cells.is_free(attached + share * size * along);
                 if LOOKS.iter().any(taken) {
                     continue;
