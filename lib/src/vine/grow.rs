@@ -22,6 +22,7 @@ use super::params::{Params, Sizes, of_level};
 use super::particle::{Charge, Form, Law, Node, follow, unit};
 use super::plait::{self, Crossing};
 use super::stem::{Stem, Taper};
+use crate::geom::near::point_segment;
 use crate::rng::Rng;
 use kurbo::{Point, Vec2};
 use std::collections::BinaryHeap;
@@ -344,10 +345,21 @@ impl<'a> Plant<'a> {
             return false;
         }
         let Some((parent, s)) = branch.parent else { return true };
+        let parent = &self.stems[parent];
+        let near: Vec<&Node> = parent.nodes.iter().filter(|node| (node.s - s).abs() < length).collect();
         let at = branch.at(SHARE * length).p;
-        let near = |node: &&Node| (node.s - s).abs() < length;
-        let mut parent = self.stems[parent].nodes.iter().filter(near);
-        !parent.any(|node| node.p.distance(at) < APART * length)
+        if near.iter().any(|node| node.p.distance(at) < APART * length) {
+            return false;
+        }
+        // Nor comes back to it, once it has left.
+        let clear = 0.5 * (parent.width(s) + branch.taper.start) + self.sizes.gap;
+        let mut has_left = false;
+        branch.nodes.iter().take_while(|node| node.s < 1.2 * SHARE * length).all(|node| {
+            let is_clear =
+                near.windows(2).all(|pair| point_segment(node.p, pair[0].p, pair[1].p) > clear);
+            has_left |= is_clear;
+            is_clear || !has_left
+        })
     }
 
     /// How a stem of this width gets thinner.

@@ -99,7 +99,10 @@ pub(super) fn curl(plant: &Plant, ground: &Ground, seed: Option<Point>, longest:
                 let pose = Pose::new(&Node { s: 0.0, p: at, along, curvature: 0.0 }, length, side);
                 let nodes: Vec<Node> = form.nodes.iter().map(|node| pose.node(node)).collect();
                 if plant.way(nodes.iter().copied(), form.length() * length, &taper, None).is_some() {
-                    return Some(Stem::new(0, None, side, nodes, taper));
+                    let stem = Stem::new(0, None, side, nodes, taper);
+                    if fits_period(plant, &stem) {
+                        return Some(stem);
+                    }
                 }
             }
         }
