@@ -3,6 +3,8 @@
 use crate::style::Style;
 use kurbo::{Affine, BezPath};
 use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::Arc;
 
 /// One painted shape.
 #[derive(Clone, Debug)]
@@ -39,13 +41,48 @@ impl Item {
     }
 }
 
-/// Shapes that clones repeat: edit them once, and every clone follows.
+/// What clones repeat: edit it once, and every clone follows.
 #[derive(Clone, Debug)]
 pub struct Symbol {
     /// Name, unique in the artwork.
     pub name: String,
-    /// Its shapes in drawing order.
-    pub parts: Vec<Part>,
+    /// What it draws, in drawing order.
+    pub items: Vec<SymbolItem>,
+}
+
+impl Symbol {
+    /// A symbol of shapes.
+    pub fn new(name: String, parts: Vec<Part>) -> Self {
+        Symbol { name, items: parts.into_iter().map(SymbolItem::Part).collect() }
+    }
+
+    /// Its own shapes, without those of other symbols and of the drawing.
+    pub fn parts(&self) -> impl Iterator<Item = &Part> {
+        self.items.iter().filter_map(|item| match item {
+            SymbolItem::Part(part) => Some(part),
+            SymbolItem::Symbol(..) | SymbolItem::Object(..) => None,
+        })
+    }
+}
+
+/// Something that a symbol draws.
+#[derive(Clone, Debug)]
+pub enum SymbolItem {
+    /// A shape of its own.
+    Part(Part),
+    /// Another symbol, and from that one's coordinates to this one's.
+    Symbol(usize, Affine),
+    /// An object of the drawing: its id, from its parent's coordinates to the symbol's, and the
+    /// style that it inherits.
+    Object(String, Affine, String),
+}
+
+/// Pieces that are made while they are written, because there may be more than memory should
+/// hold.
+pub trait Stream: fmt::Debug + Send + Sync {
+    /// Visits every piece in drawing order: what it is a copy of, its path and transform, and its
+    /// style as CSS. The same pieces every time.
+    fn each(&self, visit: &mut dyn FnMut(&str, &BezPath, Affine, &str));
 }
 
 /// A sublayer of the result.
@@ -57,6 +94,19 @@ pub struct Group {
     pub hidden: bool,
     /// Its items in drawing order.
     pub items: Vec<Item>,
+    /// What follows the items.
+    pub stream: Option<Arc<dyn Stream>>,
+}
+
+/// A step of an exploration: what was made of which form.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// References to the form and to those that it repeats; the form first.
+    pub forms: Vec<String>,
+    /// Says whether two forms are the same.
+    pub digest: String,
+    /// A small picture, in a square of 100 by 100.
+    pub picture: Vec<Part>,
 }
 
 /// What a generator made.
@@ -72,6 +122,8 @@ pub struct Artwork {
     pub warnings: Vec<String>,
     /// Counts and measures for the report, by name.
     pub counts: BTreeMap<String, f64>,
+    /// What is to be kept of an exploration.
+    pub steps: Vec<Step>,
     /// Decimals of coordinates; see [`crate::decimals_for`].
     pub decimals: usize,
 }
@@ -80,7 +132,7 @@ impl Artwork {
     /// An item's shapes, a clone's in its pose.
     pub fn shapes(&self, item: &Item) -> Vec<Part> {
         let posed = |(symbol, pose): (usize, Affine)| {
-            let parts = self.symbols[symbol].parts.iter();
+            let parts = self.symbols[symbol].parts();
             parts.map(|part| Part { transform: pose * part.transform, ..part.clone() }).collect()
         };
         item.clone.map_or_else(|| item.parts.clone(), posed)

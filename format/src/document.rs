@@ -1,8 +1,10 @@
 //! A drawing: its text, and edits that touch nothing but what is ours.
 
 mod edit;
+mod history;
 mod layers;
 mod mark;
+mod transform;
 
 use crate::encoding::{self, Encoding};
 use crate::error::{Error, Position};
@@ -12,6 +14,7 @@ use crate::read;
 use crate::scene::{Scene, Selection};
 use roxmltree::ParsingOptions;
 
+pub(crate) use history::forms_of_step;
 pub use layers::Layer;
 
 /// A drawing. Every edit returns a new one; bytes outside the edit are the source's own.

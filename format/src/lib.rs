@@ -37,16 +37,17 @@ mod vocabulary;
 mod write;
 mod xml;
 
-pub use artwork::{Artwork, Group, Item, Part, Symbol};
+pub use artwork::{Artwork, Group, Item, Part, Step, Stream, Symbol, SymbolItem};
 pub use document::{Document, Layer};
 pub use error::{Error, Position};
 pub use limits::Limits;
 pub use number::{decimals_for, path_data, write_number};
 pub use recipe::Recipe;
 pub use scene::{
-    Container, Element, Fixed, Guide, Outline, Scene, Seed, Selection, Source, Stroke, Template,
+    Container, Element, Fixed, Form, FormItem, Guide, Live, Outline, Primitive, Replication, Scene, Seed,
+    Selection, Source, Stroke, Template, When,
 };
 pub use shape::arc_to_cubics;
-pub use style::{FillRule, Style};
+pub use style::{FillRule, Style, rgb};
 pub use units::Length;
 pub use vocabulary::{NAMESPACE, Role};

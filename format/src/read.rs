@@ -5,13 +5,17 @@
 //! computed only inside annotated objects; an ordinary drawing around them costs nothing.
 
 mod collect;
+mod forms;
 mod resolver;
 mod role;
 mod walk;
 
+use crate::document::forms_of_step;
 use crate::error::Error;
 use crate::limits::Limits;
 use crate::scene::{Scene, Selection};
+use crate::style::Style;
+use crate::vocabulary::NAMESPACE;
 
 /// Reads every annotated (or selected) object of a parsed drawing.
 ///
@@ -24,13 +28,18 @@ pub(crate) fn scene(
     let mut resolver = Resolver::new(xml, limits)?;
     let mut selected = Vec::new();
     for id in &selection.ids {
-        selected.push(resolver.by_reference(id)?.ok_or_else(|| unknown_id(id))?);
+        let node = resolver.by_reference(id)?.ok_or_else(|| unknown_id(id))?;
+        // A step of an exploration stands for the form that it keeps.
+        let step = node.ancestors().find(|node| node.attribute((NAMESPACE, "step")).is_some());
+        let form = step.and_then(|step| forms_of_step(step).first().copied());
+        selected.push(form.unwrap_or(node));
     }
     resolver.mark(&selected);
     walk::walk(&resolver, selected.iter().map(roxmltree::Node::id).collect())
 }
 
-pub(crate) use resolver::Resolver;
+pub(crate) use forms::shift_of_use;
+pub(crate) use resolver::{Resolver, own_transform, transform_origin};
 
 /// The error for an id that nothing has.
 pub(crate) fn unknown_id(id: &str) -> Error {
@@ -49,8 +58,26 @@ pub(crate) fn is_svg_root(root: roxmltree::Node) -> bool {
 /// From a result layer's own coordinates to the root's. A transform that cannot be read
 /// counts as none, as renderers do.
 pub(crate) fn layer_transform(resolver: &Resolver, layer: roxmltree::Node) -> kurbo::Affine {
+    to_root(resolver, layer)
+}
+
+/// What an object inherits from those around it.
+pub(crate) fn inherited_style<'a>(resolver: &Resolver<'a, '_>, node: roxmltree::Node<'a, '_>) -> Style {
     let units = crate::units::Units { viewport: resolver.view.size(), em: 16.0 };
-    let mut chain: Vec<_> = layer.ancestors().filter(|node| node.parent_element().is_some()).collect();
+    let mut chain: Vec<_> = node.ancestors().skip(1).filter(roxmltree::Node::is_element).collect();
+    chain.reverse();
+    chain.into_iter().fold(Style::initial(), |style, node| resolver.cascade.computed(node, &style, &units))
+}
+
+/// From the coordinates of what is around an object to the root's.
+pub(crate) fn parent_transform(resolver: &Resolver, node: roxmltree::Node) -> kurbo::Affine {
+    node.parent_element().map_or(kurbo::Affine::IDENTITY, |parent| to_root(resolver, parent))
+}
+
+/// From an object's own coordinates, its transform included, to the root's.
+fn to_root(resolver: &Resolver, node: roxmltree::Node) -> kurbo::Affine {
+    let units = crate::units::Units { viewport: resolver.view.size(), em: 16.0 };
+    let mut chain: Vec<_> = node.ancestors().filter(|node| node.parent_element().is_some()).collect();
     chain.reverse();
     chain
         .into_iter()

@@ -3,7 +3,7 @@
 use crate::artwork::Part;
 use crate::error::{Error, Position};
 use crate::style::FillRule;
-use kurbo::{BezPath, Point, Rect};
+use kurbo::{Affine, BezPath, Point, Rect};
 use std::collections::BTreeMap;
 
 /// Which unannotated objects to use, by id: closed shapes become containers, open paths
@@ -35,6 +35,10 @@ pub struct Scene {
     pub seeds: Vec<Seed>,
     /// Templates.
     pub elements: Vec<Element>,
+    /// Display lists, in drawing order.
+    pub forms: Vec<Form>,
+    /// Fixed points of tack transformations.
+    pub tacks: Vec<Seed>,
     /// Paths that stop growth.
     pub boundaries: Vec<Guide>,
     /// Strokes that paint a growth area.
@@ -147,4 +151,73 @@ pub struct Element {
     pub sets: Vec<String>,
     /// The artwork.
     pub template: Template,
+}
+
+/// A display list of primitives and clones: a recursive form.
+#[derive(Clone, Debug)]
+pub struct Form {
+    /// The group.
+    pub source: Source,
+    /// True if it is to be drawn for its own sake: it was selected, or nothing was and no other
+    /// form has a clone of it.
+    pub is_root: bool,
+    /// In paint order.
+    pub items: Vec<FormItem>,
+    /// Parameters this form sets for itself: `rinceau:depth="8"` and so on.
+    pub overrides: BTreeMap<String, String>,
+}
+
+/// An entry of a display list.
+#[derive(Clone, Debug)]
+pub enum FormItem {
+    /// What is drawn.
+    Primitive(Primitive),
+    /// Where a form goes on.
+    Clone(Replication),
+}
+
+/// A drawn part of a motif.
+#[derive(Clone, Debug)]
+pub struct Primitive {
+    /// As drawn.
+    pub part: Part,
+    /// When it is drawn.
+    pub when: When,
+    /// How a clone refers to the object itself; `None` if it has no id. Parts of one object have
+    /// the same.
+    pub live: Option<Live>,
+}
+
+/// In which generations a primitive is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum When {
+    /// As the whole form.
+    #[default]
+    AsForm,
+    /// Only in the last.
+    Last,
+    /// In all but the last.
+    Inner,
+}
+
+/// What a clone of a drawn object needs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Live {
+    /// Its id.
+    pub id: String,
+    /// From its parent's coordinates to user units of the root.
+    pub frame: Affine,
+    /// What it inherits, as CSS.
+    pub inherited: String,
+}
+
+/// A clone inside a form.
+#[derive(Clone, Debug)]
+pub struct Replication {
+    /// The clone.
+    pub source: Source,
+    /// Index of the form it repeats.
+    pub form: usize,
+    /// From the place where that form is drawn to where it goes, in user units of the root.
+    pub transform: Affine,
 }

@@ -1,12 +1,13 @@
 //! Artwork to a result layer.
 
-use crate::artwork::{Artwork, Group, Item, Part, Symbol};
+use crate::artwork::{Artwork, Group, Item, Part, Stream, Symbol, SymbolItem};
 use crate::number::{write_number, write_path_data};
 use crate::recipe::Recipe;
 use crate::vocabulary::{INKSCAPE, NAMESPACE, SODIPODI, SVG, XLINK};
 use kurbo::Affine;
 use std::borrow::Cow;
 use std::fmt::Write;
+use std::io;
 
 /// Inkscape's merge of an extension's result is quadratic in siblings, so they come in groups.
 const SIBLINGS: usize = 200;
@@ -27,9 +28,48 @@ pub(crate) struct Target<'a> {
     pub newline: &'a str,
 }
 
-/// The whole layer as text. It declares its own namespaces, so that nothing outside it has
+/// Where text goes: into memory, or out as soon as there is some.
+#[derive(Default)]
+pub(crate) struct Sink<'a> {
+    pub text: String,
+    out: Option<&'a mut dyn io::Write>,
+    failed: Option<io::Error>,
+}
+
+impl<'a> Sink<'a> {
+    /// One that passes on what it gets.
+    pub fn to(out: &'a mut dyn io::Write) -> Self {
+        Sink { text: String::new(), out: Some(out), failed: None }
+    }
+
+    /// Passes on what there is, if it is worth it.
+    pub fn flush_some(&mut self) {
+        const SOME: usize = 1 << 16;
+        if self.text.len() >= SOME {
+            self.flush();
+        }
+    }
+
+    fn flush(&mut self) {
+        let Some(out) = self.out.as_mut() else { return };
+        if self.failed.is_none() {
+            self.failed = out.write_all(self.text.as_bytes()).err();
+        }
+        self.text.clear();
+    }
+
+    /// Passes on the rest.
+    ///
+    /// Errors: the first that there was.
+    pub fn finish(mut self) -> io::Result<()> {
+        self.flush();
+        self.failed.map_or(Ok(()), Err)
+    }
+}
+
+/// The start tag of a layer. It declares its own namespaces, so that nothing outside it has
 /// to change, and taking it out leaves the drawing as it was.
-pub(crate) fn layer(artwork: &Artwork, recipe: &Recipe, target: &Target) -> String {
+pub(crate) fn open_layer(recipe: &Recipe, target: &Target) -> String {
     let mut out = String::new();
     let prefix = target.svg_prefix;
     let _ = write!(out, "<{prefix}g");
@@ -52,8 +92,6 @@ pub(crate) fn layer(artwork: &Artwork, recipe: &Recipe, target: &Target) -> Stri
         attribute(&mut out, "rinceau:root", "empty");
     }
     out.push('>');
-    out.push_str(&content(artwork, target));
-    let _ = write!(out, "</{prefix}g>");
     out
 }
 
@@ -67,16 +105,14 @@ pub(crate) fn recipe_attributes(out: &mut String, recipe: &Recipe, prefix: &str)
 }
 
 /// Everything between the layer's tags.
-pub(crate) fn content(artwork: &Artwork, target: &Target) -> String {
-    let mut out = String::new();
+pub(crate) fn content(sink: &mut Sink, artwork: &Artwork, target: &Target) {
     if !artwork.symbols.is_empty() {
-        symbols(&mut out, artwork, target);
+        symbols(&mut sink.text, artwork, target);
     }
     for group in &artwork.groups {
-        sublayer(&mut out, group, artwork, target);
+        sublayer(sink, group, artwork, target);
     }
-    out.push_str(target.newline);
-    out
+    sink.text.push_str(target.newline);
 }
 
 /// What clones repeat, in definitions of the layer's own.
@@ -84,6 +120,14 @@ fn symbols(out: &mut String, artwork: &Artwork, target: &Target) {
     let (prefix, newline) = (target.svg_prefix, target.newline);
     let _ = write!(out, "{newline}<{prefix}defs");
     attribute(out, "id", &format!("{}-symbols", target.id));
+    if artwork
+        .symbols
+        .iter()
+        .flat_map(|symbol| &symbol.items)
+        .any(|item| !matches!(item, SymbolItem::Part(_)))
+    {
+        attribute(out, "xmlns:xlink", XLINK);
+    }
     out.push('>');
     // Clones carry the pose, and with it the way to the layer's coordinates.
     let own = Target { inverse: Affine::IDENTITY, ..*target };
@@ -94,7 +138,18 @@ fn symbols(out: &mut String, artwork: &Artwork, target: &Target) {
         out.push('>');
         // Of size 1, so their coordinates need more decimals than those of a page.
         const DECIMALS: usize = 5;
-        symbol.parts.iter().for_each(|part| write_part(out, part, None, DECIMALS, &own));
+        for item in &symbol.items {
+            match item {
+                SymbolItem::Part(part) => write_part(out, part, None, DECIMALS, &own),
+                SymbolItem::Symbol(other, pose) => {
+                    let id = symbol_id(target, &artwork.symbols[*other]);
+                    write_use(out, prefix, &id, &matrix(*pose, MATRIX_DECIMALS), "");
+                }
+                SymbolItem::Object(id, pose, style) => {
+                    write_use(out, prefix, id, &matrix(*pose, MATRIX_DECIMALS), style);
+                }
+            }
+        }
         let _ = write!(out, "</{prefix}g>");
     }
     let _ = write!(out, "{newline}</{prefix}defs>");
@@ -104,7 +159,20 @@ fn symbol_id(target: &Target, symbol: &Symbol) -> String {
     format!("{}-symbol-{}", target.id, symbol.name)
 }
 
-fn sublayer(out: &mut String, group: &Group, artwork: &Artwork, target: &Target) {
+/// A clone without an id.
+fn write_use(out: &mut String, prefix: &str, id: &str, transform: &str, style: &str) {
+    let _ = write!(out, "<{prefix}use");
+    attribute(out, "transform", transform);
+    if !style.is_empty() {
+        attribute(out, "style", style);
+    }
+    // The old name: programs of before SVG 2 know only that.
+    attribute(out, "xlink:href", &format!("#{id}"));
+    out.push_str("/>");
+}
+
+fn sublayer(sink: &mut Sink, group: &Group, artwork: &Artwork, target: &Target) {
+    let out = &mut sink.text;
     let (prefix, newline) = (target.svg_prefix, target.newline);
     let id = format!("{}-{}", target.id, group.name);
     let _ = write!(out, "{newline}<{prefix}g");
@@ -120,6 +188,7 @@ fn sublayer(out: &mut String, group: &Group, artwork: &Artwork, target: &Target)
     out.push('>');
     let grouped = group.items.len() > SIBLINGS;
     for (chunk_index, chunk) in group.items.chunks(SIBLINGS).enumerate() {
+        let out = &mut sink.text;
         if grouped {
             let _ = write!(out, "{newline}<{prefix}g");
             attribute(out, "id", &format!("{id}-g{}", chunk_index + 1));
@@ -132,8 +201,50 @@ fn sublayer(out: &mut String, group: &Group, artwork: &Artwork, target: &Target)
         if grouped {
             let _ = write!(out, "{newline}</{prefix}g>");
         }
+        sink.flush_some();
     }
-    let _ = write!(out, "{newline}</{prefix}g>");
+    if let Some(stream) = &group.stream {
+        write_stream(sink, stream.as_ref(), &id, artwork.decimals, target);
+    }
+    let _ = write!(sink.text, "{newline}</{prefix}g>");
+}
+
+/// The pieces of a stream, in groups.
+fn write_stream(sink: &mut Sink, stream: &dyn Stream, id: &str, decimals: usize, target: &Target) {
+    let (prefix, newline) = (target.svg_prefix, target.newline);
+    let is_root = target.inverse == Affine::IDENTITY;
+    let mut count = 0;
+    stream.each(&mut |of, path, transform, style| {
+        let out = &mut sink.text;
+        if count % SIBLINGS == 0 {
+            if count > 0 {
+                let _ = write!(out, "{newline}</{prefix}g>");
+            }
+            let _ = write!(out, "{newline}<{prefix}g id=\"{id}-g{}\">", count / SIBLINGS + 1);
+        }
+        count += 1;
+        out.push_str(newline);
+        out.push('<');
+        out.push_str(prefix);
+        out.push_str("path id=\"");
+        out.push_str(id);
+        out.push('-');
+        write_number(out, count as f64, 0);
+        out.push('"');
+        attribute(out, "rinceau:of", of);
+        let transform = if is_root { transform } else { target.inverse * transform };
+        if transform != Affine::IDENTITY {
+            attribute(out, "transform", &matrix(transform, MATRIX_DECIMALS));
+        }
+        attribute(out, "style", style);
+        out.push_str(" d=\"");
+        write_path_data(out, path, decimals);
+        out.push_str("\"/>");
+        sink.flush_some();
+    });
+    if count > 0 {
+        let _ = write!(sink.text, "{newline}</{prefix}g>");
+    }
 }
 
 fn write_item(out: &mut String, item: &Item, id: &str, artwork: &Artwork, target: &Target) {
@@ -161,6 +272,20 @@ fn write_item(out: &mut String, item: &Item, id: &str, artwork: &Artwork, target
         write_part(out, part, None, decimals, target);
     }
     let _ = write!(out, "</{prefix}g>");
+}
+
+/// A part of a picture, in the coordinates of the group around it.
+pub(crate) fn write_part_at(out: &mut String, part: &Part, svg_prefix: &str) {
+    const DECIMALS: usize = 2;
+    let target = Target {
+        id: "",
+        svg_prefix,
+        has_namespace: true,
+        inverse: Affine::IDENTITY,
+        in_empty_root: false,
+        newline: "",
+    };
+    write_part(out, part, None, DECIMALS, &target);
 }
 
 fn write_part(out: &mut String, part: &Part, item: Option<(&str, &str)>, decimals: usize, target: &Target) {
@@ -193,7 +318,7 @@ const MATRIX_DECIMALS: usize = 9;
 /// Those of a clone multiply coordinates of about 1.
 const CLONE_DECIMALS: usize = 1;
 
-fn matrix(transform: Affine, decimals: usize) -> String {
+pub(crate) fn matrix(transform: Affine, decimals: usize) -> String {
     let mut text = String::from("matrix(");
     for (i, c) in transform.as_coeffs().into_iter().enumerate() {
         if i > 0 {

@@ -3,9 +3,10 @@
 use crate::pack;
 use crate::params::{ParamSpec, Values};
 use crate::progress::Progress;
+use crate::recurse;
 use crate::rng::Rng;
 use crate::vine;
-use rinceau_format::{Artwork, Error, Scene};
+use rinceau_format::{Artwork, Error, Scene, Source};
 
 /// A generator: its name, what a menu calls it, and its parameters.
 #[derive(Clone, Copy, Debug)]
@@ -18,7 +19,15 @@ pub struct Generator {
     pub about: &'static str,
     /// Its parameters.
     pub table: &'static [ParamSpec],
+    sources: fn(&Scene) -> Vec<&Source>,
     run: Run,
+}
+
+impl Generator {
+    /// What a result is made from: its layer stands for these.
+    pub fn sources<'a>(&self, scene: &'a Scene) -> Vec<&'a Source> {
+        (self.sources)(scene)
+    }
 }
 
 type Run = fn(&Values, &Scene, &mut Rng, &mut dyn Progress) -> Result<Artwork, Error>;
@@ -30,6 +39,7 @@ pub const GENERATORS: &[Generator] = &[
         title: "Pack along flow",
         about: "Fill shapes with leaves, drops or your own elements that bend along a flow",
         table: pack::Params::TABLE,
+        sources: containers,
         run: |values, scene, rng, progress| {
             pack::generate(&pack::Params::from_values(values), scene, rng, progress)
         },
@@ -39,11 +49,26 @@ pub const GENERATORS: &[Generator] = &[
         title: "Grow vines",
         about: "Fill shapes with scrolling vines: stems that curl and branch, with leaves and flowers",
         table: vine::Params::TABLE,
+        sources: containers,
         run: |values, scene, rng, progress| {
             vine::generate(&vine::Params::from_values(values), scene, rng, progress)
         },
     },
+    Generator {
+        name: "recurse",
+        title: "Repeat a form",
+        about: "Repeat a motif in clones of itself: trees, spirals, tilings, space-filling curves",
+        table: recurse::Params::TABLE,
+        sources: recurse::sources,
+        run: |values, scene, rng, progress| {
+            recurse::generate(&recurse::Params::from_values(values), scene, rng, progress)
+        },
+    },
 ];
+
+fn containers(scene: &Scene) -> Vec<&Source> {
+    scene.containers.iter().map(|container| &container.source).collect()
+}
 
 /// Runs a generator.
 ///

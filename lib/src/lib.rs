@@ -6,6 +6,7 @@
 //! | generator | from |
 //! |---|---|
 //! | [`pack`] | Saputra, Kaplan, Asente, Mech: *FLOWPAK: Flow-based ornamental element packing*, 2017 |
+//! | [`recurse`] | Carlson, Woodbury: *Hands-on exploration of recursive forms*, 1990 |
 //! | [`vine`] | Xu, Mould: *Magnetic curves*, 2009, and an article that adds clip art |
 
 pub mod field;
@@ -16,8 +17,10 @@ pub mod palette;
 pub mod params;
 pub mod progress;
 pub mod quality;
+pub mod recurse;
 pub mod rng;
 pub mod shapes;
+pub mod tack;
 pub mod vine;
 
 pub use generate::{GENERATORS, Generator, generate};

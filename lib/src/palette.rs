@@ -37,14 +37,6 @@ pub fn palette(name: &str, container_fill: Option<&str>) -> [&'static str; 3] {
 
 /// Perceived brightness of a colour, 0 black to 1 white. `None` for gradients and patterns.
 fn luminance(colour: &str) -> Option<f64> {
-    let hex = colour.trim().strip_prefix('#');
-    let channel =
-        |range: std::ops::Range<usize>| hex.and_then(|hex| u8::from_str_radix(hex.get(range)?, 16).ok());
-    let (r, g, b) = match (hex.map(str::len), colour.trim()) {
-        (Some(6), _) => (channel(0..2)?, channel(2..4)?, channel(4..6)?),
-        (Some(3), _) => (channel(0..1)? * 17, channel(1..2)? * 17, channel(2..3)? * 17),
-        (_, "black" | "navy" | "darkgreen" | "darkblue" | "maroon" | "indigo") => (20, 20, 20),
-        _ => return None,
-    };
+    let [r, g, b] = rinceau_format::rgb(colour)?;
     Some((0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b)) / 255.0)
 }

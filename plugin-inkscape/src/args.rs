@@ -60,6 +60,21 @@ pub fn command() -> Command {
                 .arg(ids(true)),
         )
         .subcommand(
+            Command::new("tack")
+                .about("Move objects exactly, held by marked tacks and dragged along a marked guide")
+                .arg(operation())
+                .arg(input())
+                .arg(output())
+                .arg(ids(true)),
+        )
+        .subcommand(
+            Command::new("resume")
+                .about("Put the form of a step of an exploration back into the drawing, to be changed")
+                .arg(input())
+                .arg(output())
+                .arg(ids(true)),
+        )
+        .subcommand(
             Command::new("check")
                 .about("Say what the marks in a drawing mean, and what is wrong with them")
                 .arg(input()),
@@ -80,11 +95,8 @@ fn input() -> Arg {
 }
 
 fn output() -> Arg {
-    Arg::new("output")
-        .short('o')
-        .long("output")
-        .value_name("OUTPUT")
-        .help("Where to write; standard output if absent or '-'")
+    // `--output` is a parameter of one generator.
+    Arg::new("out").short('o').value_name("OUTPUT").help("Where to write; standard output if absent or '-'")
 }
 
 fn ids(required: bool) -> Arg {
@@ -103,6 +115,16 @@ fn role() -> Arg {
         .required(true)
         .value_parser(names.collect::<Vec<_>>())
         .help("What the objects mean; 'none' clears")
+}
+
+fn operation() -> Arg {
+    let names = rinceau::tack::OPERATIONS.iter().map(|(name, ..)| *name);
+    let tips = rinceau::tack::OPERATIONS.iter().map(|(name, _, tip)| format!("{name}: {tip}"));
+    Arg::new("operation")
+        .value_name("OPERATION")
+        .required(true)
+        .value_parser(names.collect::<Vec<_>>())
+        .help(tips.collect::<Vec<_>>().join(". "))
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

@@ -32,6 +32,8 @@ pub fn summary(document: &Document, scene: &Scene) -> Result<String, Error> {
     list("stem", scene.stems.iter().map(|g| &g.source).collect());
     list("seed", scene.seeds.iter().map(|s| &s.source).collect());
     list("element", scene.elements.iter().map(|e| &e.source).collect());
+    list("form", scene.forms.iter().map(|f| &f.source).collect());
+    list("tack", scene.tacks.iter().map(|t| &t.source).collect());
     list("boundary", scene.boundaries.iter().map(|g| &g.source).collect());
     list("spray", scene.sprays.iter().map(|s| &s.source).collect());
     for element in scene.elements.iter().filter(|element| element.template.spine.is_none()) {
@@ -48,7 +50,7 @@ pub fn summary(document: &Document, scene: &Scene) -> Result<String, Error> {
     for warning in &scene.warnings {
         let _ = writeln!(out, "{warning}");
     }
-    if scene.containers.is_empty() {
+    if scene.containers.is_empty() && scene.forms.is_empty() {
         let _ = writeln!(
             out,
             "nothing is marked as container: select a closed shape when you run a generator, or mark one"

@@ -85,6 +85,19 @@ impl Call {
             let role = Role::from_name(role);
             return Ok(Document::from_bytes(input)?.with_role(&self.ids, role)?.to_bytes());
         }
+        if let Some(operation) = self.tool.strip_prefix("tack-") {
+            return Ok(run::tacked(&Document::from_bytes(input)?, operation, &self.ids)?.to_bytes());
+        }
+        if self.tool == "resume" {
+            let Some(id) = self.ids.first() else {
+                return Err(Error::new(
+                    "nothing-selected",
+                    "Nothing is selected",
+                    "Select one of the pictures in the layer of explored forms",
+                ));
+            };
+            return Ok(Document::from_bytes(input)?.with_resumed(id)?.to_bytes());
+        }
         if self.tool == "check" {
             let document = Document::from_bytes(input.clone())?;
             let scene = document.scene(&Selection::default())?;
@@ -134,7 +147,7 @@ impl Call {
             bytes: input,
             progress: &mut progress,
         })?;
-        Ok(done.document.to_bytes())
+        done.to_bytes()
     }
 
     fn take(&mut self, name: &str) -> Option<String> {

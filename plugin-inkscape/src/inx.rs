@@ -26,6 +26,9 @@ const MARKS: &[(&str, &str)] = &[
     ("fixed-spine", "Fixed spine (a line an element must lie along)"),
     ("stem", "Stem (the main stem of a vine)"),
     ("seed", "Seed (where a vine starts)"),
+    ("form", "Form (a motif with clones of itself)"),
+    ("clone", "Clone (a copy in a form, where it goes on)"),
+    ("tack", "Tack (a point that stays when others are dragged)"),
     ("none", "Clear marks"),
 ];
 
@@ -44,6 +47,22 @@ pub fn all(binary: &str) -> Vec<(String, String)> {
             command(&format!("mark-{role}"), title, &tip, &[MENU, "Mark as"], binary),
         ));
     }
+    for (operation, title, tip) in rinceau::tack::OPERATIONS {
+        files.push((
+            format!("tack-{operation}.inx"),
+            command(&format!("tack-{operation}"), title, tip, &[MENU, "Tacks"], binary),
+        ));
+    }
+    files.push((
+        "resume.inx".to_owned(),
+        command(
+            "resume",
+            "Take out explored form",
+            "Puts the form of a picture in the layer of explored forms back into the drawing, to be changed",
+            &[MENU],
+            binary,
+        ),
+    ));
     files.push((
         "check.inx".to_owned(),
         command(
@@ -190,6 +209,14 @@ fn help(generator: &Generator) -> &'static [&'static str] {
             "For more, mark objects with Extensions > Ornament > Mark as: shapes to fill as containers, lines as stems, small dots as seeds where a stem starts, what must stay free as fixed. A group marked as element, with a straight spine and the kind leaf, flower or bud, is used instead of the built-in ones.",
             "Lists such as 1.4,1.2,1 give a value per level: the main stem first, then its branches, then theirs.",
             "Leaves and flowers are clones: edit one in the layer's symbols, and all follow. For cutting and plotting choose copies, and one shape or lines for the stems.",
+        ],
+        "recurse" => &[
+            "Draw a motif, clone it (Edit > Clone > Create Clone), and move, turn, scale, shear or mirror the clones. Group motif and clones, select the group and press Apply: every clone gets clones of its own, and so on.",
+            "What lies on top in the group lies on top in every copy.",
+            "Generations is how often it goes on; switch on Live preview and change the drawing.",
+            "A closed shape selected with the group, or marked as container, is a frame that the form is fitted into, so that the motif can stay beside it.",
+            "A clone placed exactly: mark points as tacks and a line as guide, and use Extensions > Ornament > Tacks.",
+            "Several groups may clone each other: mark each as form.",
         ],
         _ => &[],
     }

@@ -35,16 +35,43 @@ pub fn read(path: Option<&Path>) -> Result<Vec<u8>, Error> {
 /// as it was: a temporary file beside it is written, synced and renamed. A link stays a link,
 /// and permissions stay as they were. A name that ends in `.svgz` is compressed.
 pub fn write(path: Option<&Path>, bytes: &[u8]) -> Result<(), Error> {
-    let result = match path {
-        Some(path) if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svgz")) => {
-            gzip(bytes).and_then(|bytes| replace(path, &bytes))
-        }
-        Some(path) => replace(path, bytes),
-        None => {
-            let mut out = io::stdout().lock();
-            out.write_all(bytes).and_then(|()| out.flush())
+    write_by(path, |out| Ok(out.write_all(bytes)))
+}
+
+/// The same by a function that writes piece after piece. Its own error leaves everything as it
+/// was.
+pub fn write_by(
+    path: Option<&Path>,
+    fill: impl FnOnce(&mut dyn Write) -> Result<io::Result<()>, Error>,
+) -> Result<(), Error> {
+    let mut refused = None;
+    // The two kinds of errors go different ways.
+    let fill = |out: &mut dyn Write| match fill(out) {
+        Ok(written) => written,
+        Err(error) => {
+            refused = Some(error);
+            Err(io::Error::other("refused"))
         }
     };
+    let result = match path {
+        Some(path) if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svgz")) => {
+            replace(path, |out| {
+                // No name and no time in the header: the same drawing is the same bytes.
+                let mut encoder =
+                    flate2::GzBuilder::new().mtime(0).write(out, flate2::Compression::default());
+                fill(&mut encoder)?;
+                encoder.finish().map(drop)
+            })
+        }
+        Some(path) => replace(path, fill),
+        None => {
+            let mut out = io::stdout().lock();
+            fill(&mut out).and_then(|()| out.flush())
+        }
+    };
+    if let Some(error) = refused {
+        return Err(error);
+    }
     result.map_err(|error| {
         Error::new(
             "cannot-write",
@@ -61,12 +88,12 @@ pub fn copy(path: &Path) -> io::Result<()> {
     out.flush()
 }
 
-fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+fn replace(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let target = followed(path);
     let existing = fs::metadata(&target).ok();
     if existing.as_ref().is_some_and(|metadata| !metadata.is_file()) {
         // A device or pipe such as /dev/stdout: there is nothing to replace.
-        return File::options().write(true).open(&target)?.write_all(bytes);
+        return fill(&mut File::options().write(true).open(&target)?);
     }
     let folder = target
         .parent()
@@ -81,7 +108,7 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
         fs::Permissions::from_mode(0o666)
     });
     let mut file = builder.tempfile_in(folder)?;
-    file.write_all(bytes)?;
+    fill(file.as_file_mut())?;
     if let Some(metadata) = existing {
         file.as_file().set_permissions(metadata.permissions())?;
     }
@@ -106,13 +133,6 @@ fn followed(path: &Path) -> PathBuf {
         }
     }
     path
-}
-
-fn gzip(bytes: &[u8]) -> io::Result<Vec<u8>> {
-    // No name and no time in the header: the same drawing is the same bytes.
-    let mut encoder = flate2::GzBuilder::new().mtime(0).write(Vec::new(), flate2::Compression::default());
-    encoder.write_all(bytes)?;
-    encoder.finish()
 }
 
 fn name(path: Option<&Path>) -> String {

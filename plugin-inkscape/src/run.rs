@@ -2,6 +2,7 @@
 
 use crate::{check, install, output, progress};
 use clap::ArgMatches;
+use rinceau::tack::Tacked;
 use rinceau::{Error, GENERATORS, Generator, Values};
 use rinceau_format::{Artwork, Document, Recipe, Role, Scene, Selection};
 use serde_json::json;
@@ -24,6 +25,28 @@ pub struct Done {
     pub document: Document,
     pub scene: Scene,
     pub artwork: Artwork,
+    pub recipe: Recipe,
+}
+
+impl Done {
+    /// The drawing with the artwork in it.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, Error> {
+        Ok(self.document.with_layer(&self.artwork, &self.recipe)?.to_bytes())
+    }
+
+    /// How evenly the containers are filled, where that is what the generator does.
+    fn quality(&self) -> Result<serde_json::Value, Error> {
+        let fills = self.artwork.groups.iter().all(|group| group.stream.is_none());
+        if !fills || self.scene.containers.is_empty() {
+            return Ok(serde_json::Value::Null);
+        }
+        Ok(json!(rinceau::quality::measure(&self.scene, &self.artwork)?))
+    }
+
+    /// Writes the same as it is made.
+    fn write(&self, path: Option<&Path>) -> Result<(), Error> {
+        output::write_by(path, |out| self.document.write_with_layer(&self.artwork, &self.recipe, out))
+    }
 }
 
 /// Runs a generator on a drawing.
@@ -34,17 +57,29 @@ pub fn generate(job: Job) -> Result<Done, Error> {
     job.progress.limit(job.time_limit);
     let artwork =
         rinceau::generate(job.generator, &job.values, &scene, job.seed, job.progress.as_progress())?;
-    job.progress.begin("write");
-    let labels: Vec<&str> =
-        scene.containers.iter().map(|container| container.source.label.as_str()).collect();
+    let sources = job.generator.sources(&scene);
+    let labels: Vec<&str> = sources.iter().map(|source| source.label.as_str()).collect();
     let recipe = Recipe {
         generator: job.generator.name.to_owned(),
         params: job.values.recipe(job.generator.table),
         seed: job.seed,
-        sources: scene.containers.iter().map(|container| container.source.id.clone()).collect(),
+        sources: sources.iter().map(|source| source.id.clone()).collect(),
         label: format!("Ornament - {}", labels.join(", ")),
     };
-    Ok(Done { document: document.with_layer(&artwork, &recipe)?, scene, artwork })
+    let mut document = document;
+    for step in &artwork.steps {
+        document = document.with_step(step, &recipe)?;
+    }
+    Ok(Done { document, scene, artwork, recipe })
+}
+
+/// Moves objects by tacks.
+pub fn tacked(document: &Document, operation: &str, ids: &[String]) -> Result<Document, Error> {
+    let scene = document.scene(&Selection::default())?;
+    match rinceau::tack::tacked(operation, &scene, ids)? {
+        (moved, Tacked::By(by)) => document.with_transform(&moved, by),
+        (moved, Tacked::OntoSource) => document.with_clones_on_source(&moved),
+    }
 }
 
 /// Runs a parsed command line.
@@ -55,7 +90,19 @@ pub fn command(matches: &ArgMatches) -> Result<(), Error> {
             let role = matches.get_one::<String>("role").and_then(|name| Role::from_name(name));
             let document =
                 Document::from_bytes(output::read(input(matches))?)?.with_role(&ids(matches), role)?;
-            output::write(path(matches, "output"), &document.to_bytes())
+            output::write(path(matches, "out"), &document.to_bytes())
+        }
+        "tack" => {
+            let operation = matches.get_one::<String>("operation").map_or("drag", String::as_str);
+            let document = Document::from_bytes(output::read(input(matches))?)?;
+            output::write(path(matches, "out"), &tacked(&document, operation, &ids(matches))?.to_bytes())
+        }
+        "resume" => {
+            let mut document = Document::from_bytes(output::read(input(matches))?)?;
+            for id in ids(matches) {
+                document = document.with_resumed(&id)?;
+            }
+            output::write(path(matches, "out"), &document.to_bytes())
         }
         "check" => check::run(&Document::from_bytes(output::read(input(matches))?)?),
         "install" => install::install(matches.get_one::<PathBuf>("dir").map(PathBuf::as_path)),
@@ -90,9 +137,8 @@ fn generator_command(generator: &'static Generator, matches: &ArgMatches) -> Res
         bytes,
         progress: &mut progress,
     })?;
-    let document = done.document.to_bytes();
-    progress.start("save");
-    output::write(path(matches, "output"), &document)?;
+    progress.start("write");
+    done.write(path(matches, "out"))?;
     for warning in &done.artwork.warnings {
         eprintln!("rinceau: note: {warning}");
     }
@@ -106,7 +152,7 @@ fn generator_command(generator: &'static Generator, matches: &ArgMatches) -> Res
             "params": recipe,
             "seed": seed,
             "counts": done.artwork.counts,
-            "quality": rinceau::quality::measure(&done.scene, &done.artwork)?,
+            "quality": done.quality()?,
             "complete": done.artwork.complete,
             "warnings": done.artwork.warnings,
             "milliseconds": stages,

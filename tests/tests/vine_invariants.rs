@@ -122,12 +122,20 @@ fn without_copies(artwork: &Artwork, (left, period): (f64, f64)) -> Artwork {
         let boxes: Vec<Rect> = pieces(&artwork, name).iter().map(|piece| bounds(piece)).collect();
         for &rect in boxes.iter().filter(|rect| rect.width() < period - SLACK) {
             let has_copy = |shift: f64| boxes.iter().any(|&other| same(other, by(rect, shift)));
-            assert!(rect.x0 > left - SLACK || has_copy(period), "{name} at {rect:?} is missing at the right end");
+            assert!(
+                rect.x0 > left - SLACK || has_copy(period),
+                "{name} at {rect:?} is missing at the right end"
+            );
             let right = left + period;
-            assert!(rect.x1 < right + SLACK || has_copy(-period), "{name} at {rect:?} is missing at the left end");
+            assert!(
+                rect.x1 < right + SLACK || has_copy(-period),
+                "{name} at {rect:?} is missing at the left end"
+            );
         }
         let is_copy = |i: usize| {
-            boxes[..i].iter().any(|&first| [period, -period].iter().any(|&shift| same(by(first, shift), boxes[i])))
+            boxes[..i]
+                .iter()
+                .any(|&first| [period, -period].iter().any(|&shift| same(by(first, shift), boxes[i])))
         };
         let Some(group) = artwork.groups.iter_mut().find(|group| group.name == name) else { continue };
         let mut i = 0;
@@ -551,7 +559,8 @@ fn every_sample_keeps_its_promises() {
             let region = region(container).unwrap();
             let repeats = container.overrides.get("repeat").is_some_and(|repeat| repeat == "true");
             let bounds = region.bounds();
-            let artwork = if repeats { without_copies(&artwork, (bounds.x0, bounds.width())) } else { artwork.clone() };
+            let artwork =
+                if repeats { without_copies(&artwork, (bounds.x0, bounds.width())) } else { artwork.clone() };
             let plant = Plant::read(&artwork, !scene.stems.is_empty());
             if !repeats {
                 assert_in_place(&plant, &region, 0.0, &[], 0.0);

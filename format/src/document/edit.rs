@@ -1,6 +1,39 @@
 //! Byte-range splices.
 
+use crate::write::Sink;
 use std::ops::Range;
+
+/// What takes the place of a range: text, and in one edit the content of a layer between two
+/// texts.
+pub(super) enum New {
+    Text(String),
+    Layer(String, String),
+}
+
+/// As [`splice`], into a sink; `content` writes what is between the texts of a layer.
+pub(super) fn splice_to(
+    text: &str,
+    mut edits: Vec<(Range<usize>, New)>,
+    sink: &mut Sink,
+    mut content: impl FnMut(&mut Sink),
+) {
+    edits.sort_by_key(|(range, _)| range.start);
+    let mut at = 0;
+    for (range, new) in edits {
+        debug_assert!(range.start >= at, "edits overlap");
+        sink.text.push_str(&text[at..range.start]);
+        match new {
+            New::Text(new) => sink.text.push_str(&new),
+            New::Layer(before, after) => {
+                sink.text.push_str(&before);
+                content(sink);
+                sink.text.push_str(&after);
+            }
+        }
+        at = range.end;
+    }
+    sink.text.push_str(&text[at..]);
+}
 
 /// Replaces ranges of `text`. Ranges must not overlap; they may touch, and are applied in
 /// order of their start (stable for insertions at one place).

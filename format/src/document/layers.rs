@@ -1,17 +1,19 @@
 //! Result layers: find, replace, add and remove them.
 
 use super::Document;
-use super::edit::{splice, start_tag_end};
+use super::edit::{New, splice, splice_to, start_tag_end};
 use crate::artwork::Artwork;
+use crate::encoding::Encoding;
 use crate::error::Error;
 use crate::read::{Resolver, layer_transform};
 use crate::recipe::Recipe;
 use crate::vocabulary::{NAMESPACE, SVG};
-use crate::write::{self, Target, attribute, escaped};
+use crate::write::{self, Sink, Target, attribute, escaped};
 use crate::xml::{PlainAttribute, is_verbatim};
 use kurbo::Affine;
 use roxmltree::Node;
 use std::collections::HashSet;
+use std::io;
 use std::ops::Range;
 
 /// A result layer found in a drawing.
@@ -78,7 +80,32 @@ impl Document {
     /// Errors: a layer that shares some but not all of the sources; a layer with a transform
     /// that cannot be inverted.
     pub fn with_layer(&self, artwork: &Artwork, recipe: &Recipe) -> Result<Document, Error> {
-        let text = self.parse(|xml| {
+        let mut sink = Sink::default();
+        self.put_layer(artwork, recipe, &mut sink)?;
+        Ok(Document { text: sink.text, ..self.clone() })
+    }
+
+    /// Writes the drawing with an artwork in it, as [`Document::with_layer`], without holding all
+    /// of it in memory. The inner result is that of writing.
+    ///
+    /// Errors: as [`Document::with_layer`]; then nothing has been written.
+    pub fn write_with_layer(
+        &self,
+        artwork: &Artwork,
+        recipe: &Recipe,
+        out: &mut dyn io::Write,
+    ) -> Result<io::Result<()>, Error> {
+        // Other encodings are made of the whole text.
+        if self.encoding != Encoding::Utf8 {
+            return Ok(out.write_all(&self.with_layer(artwork, recipe)?.to_bytes()));
+        }
+        let mut sink = Sink::to(out);
+        self.put_layer(artwork, recipe, &mut sink)?;
+        Ok(sink.finish())
+    }
+
+    fn put_layer(&self, artwork: &Artwork, recipe: &Recipe, sink: &mut Sink) -> Result<(), Error> {
+        self.parse(|xml| {
             let mut mine = None;
             let sources: HashSet<&String> = recipe.sources.iter().collect();
             for node in result_nodes(xml) {
@@ -102,20 +129,19 @@ impl Document {
                 }
             }
             match mine {
-                Some(node) => self.replaced(xml, node, artwork, recipe),
-                None => self.appended(xml, artwork, recipe),
+                Some(node) => self.replaced(xml, node, (artwork, recipe), sink),
+                None => self.appended(xml, (artwork, recipe), sink),
             }
-        })?;
-        Ok(Document { text, ..self.clone() })
+        })
     }
 
     fn replaced(
         &self,
         xml: &roxmltree::Document,
         node: Node,
-        artwork: &Artwork,
-        recipe: &Recipe,
-    ) -> Result<String, Error> {
+        (artwork, recipe): (&Artwork, &Recipe),
+        sink: &mut Sink,
+    ) -> Result<(), Error> {
         self.check_verbatim(node)?;
         let resolver = Resolver::new(xml, &self.limits)?;
         let full = layer_transform(&resolver, node);
@@ -150,17 +176,18 @@ impl Document {
         let mut edits = Vec::new();
         let missing = self.recipe_edits(node, recipe, &mut edits)?;
         let tag = range.start + tag_end;
-        let content = write::content(artwork, &target);
+        let mut edits: Vec<_> = edits.into_iter().map(|(range, text)| (range, New::Text(text))).collect();
         if closes {
-            edits.push((tag..range.end, format!("{missing}>{content}</{tag_name}>")));
+            edits.push((tag..range.end, New::Layer(format!("{missing}>"), format!("</{tag_name}>"))));
         } else {
             let close = range.start + element.rfind("</").unwrap_or(element.len());
             if !missing.is_empty() {
-                edits.push((tag..tag, missing));
+                edits.push((tag..tag, New::Text(missing)));
             }
-            edits.push((tag + 1..close, content));
+            edits.push((tag + 1..close, New::Layer(String::new(), String::new())));
         }
-        Ok(splice(&self.text, edits))
+        splice_to(&self.text, edits, sink, |sink| write::content(sink, artwork, &target));
+        Ok(())
     }
 
     /// Edits that renew a layer's recipe; returns what its tag still lacks.
@@ -203,9 +230,9 @@ impl Document {
     fn appended(
         &self,
         xml: &roxmltree::Document,
-        artwork: &Artwork,
-        recipe: &Recipe,
-    ) -> Result<String, Error> {
+        (artwork, recipe): (&Artwork, &Recipe),
+        sink: &mut Sink,
+    ) -> Result<(), Error> {
         let root = xml.root_element();
         self.check_verbatim(root)?;
         let range = root.range();
@@ -224,14 +251,16 @@ impl Document {
             in_empty_root: closes,
             newline,
         };
-        let layer = write::layer(artwork, recipe, &target);
+        let (open, close) = (write::open_layer(recipe, &target), format!("</{prefix}g>"));
         let edit = if closes {
-            (range.start + tag_end..range.end, format!(">{newline}{layer}</{name}>"))
+            let (before, after) = (format!(">{newline}{open}"), format!("{close}</{name}>"));
+            (range.start + tag_end..range.end, New::Layer(before, after))
         } else {
-            let close = range.start + element.rfind("</").unwrap_or(element.len());
-            (close..close, format!("{newline}{layer}"))
+            let end = range.start + element.rfind("</").unwrap_or(element.len());
+            (end..end, New::Layer(format!("{newline}{open}"), close))
         };
-        Ok(splice(&self.text, vec![edit]))
+        splice_to(&self.text, vec![edit], sink, |sink| write::content(sink, artwork, &target));
+        Ok(())
     }
 
     /// The drawing's own line end.
@@ -306,13 +335,13 @@ fn read_recipe(document: &Document, node: Node) -> Result<Recipe, Error> {
     })
 }
 
-fn label_of(node: Node) -> String {
+pub(super) fn label_of(node: Node) -> String {
     let label = node.attribute((crate::vocabulary::INKSCAPE, "label")).or_else(|| node.plain("id"));
     label.unwrap_or("Ornament").to_owned()
 }
 
 /// An id made from a label that no object has.
-fn free_id(xml: &roxmltree::Document, label: &str) -> String {
+pub(super) fn free_id(xml: &roxmltree::Document, label: &str) -> String {
     let mut base = String::new();
     for c in label.chars().take(40) {
         let c = if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };

@@ -1,24 +1,45 @@
 //! What the walk gathers for each annotated object.
 
+use super::forms::{RawClone, RawForm, RawItem};
 use super::resolver::Resolver;
 use super::role::role_of;
 use crate::artwork::Part;
 use crate::error::Error;
-use crate::scene::{Container, Element, Fixed, Guide, Outline, Scene, Seed, Source, Stroke, Template};
+use crate::scene::{
+    Container, Element, Fixed, Guide, Live, Outline, Primitive, Scene, Seed, Source, Stroke, Template, When,
+};
 use crate::shape::points_of;
 use crate::units::mean_scale;
 use crate::vocabulary::{INKSCAPE, NAMESPACE, Role};
-use kurbo::{BezPath, ParamCurve, PathEl, Point, Rect, Shape};
+use kurbo::{Affine, BezPath, ParamCurve, PathEl, Point, Rect, Shape};
 use roxmltree::{Node, NodeId};
+use std::collections::BTreeMap;
 
 /// What stands open: an annotated object, or a selected one without a role.
+#[derive(Clone)]
 struct Collector {
     role: Option<Role>,
     source: Source,
     node: NodeId,
+    is_group: bool,
     selected: bool,
     parts: Vec<Part>,
     spines: Vec<(Point, Point)>,
+    /// For a form or a selected group: what else a display list knows of its parts, one each.
+    drawn: Vec<Drawn>,
+    /// Its clones, and before which part each stands.
+    clones: Vec<(usize, RawClone)>,
+    /// For a clone: from its own coordinates to the root's.
+    pose: Affine,
+}
+
+/// What a display list knows of a part beyond its shape.
+#[derive(Clone, Default)]
+pub(super) struct Drawn {
+    pub when: When,
+    pub live: Option<Live>,
+    /// Drawn by a clone: part of a shape, but no primitive.
+    pub of_clone: bool,
 }
 
 /// Where in the drawing a node stands, as far as roles depend on it.
@@ -38,12 +59,13 @@ pub(super) struct Gathering<'r, 'a, 'i> {
     scene: Scene,
     /// For each container of the scene, whether it was selected.
     selected_containers: Vec<bool>,
+    forms: Vec<RawForm>,
 }
 
 impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
     pub fn new(resolver: &'r Resolver<'a, 'i>) -> Self {
         let scene = Scene { view: resolver.view, px_per_unit: resolver.px_per_unit, ..Scene::default() };
-        Gathering { resolver, open: Vec::new(), scene, selected_containers: Vec::new() }
+        Gathering { resolver, open: Vec::new(), scene, selected_containers: Vec::new(), forms: Vec::new() }
     }
 
     /// True outside annotated objects.
@@ -55,27 +77,85 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
         self.scene.warnings.push(warning);
     }
 
-    /// Adds a shape to the innermost object.
-    pub fn add(&mut self, part: Part) {
+    /// Adds a shape to the innermost object; `drawn` tells a form more about it.
+    pub fn add(&mut self, part: Part, drawn: Drawn) {
         if let Some(collector) = self.open.last_mut() {
             collector.parts.push(part);
+            if collector.is_list() {
+                collector.drawn.push(drawn);
+            }
         }
     }
 
-    pub fn finish(mut self) -> Scene {
+    /// True if the innermost object is a display list.
+    pub fn is_form(&self) -> bool {
+        self.open.last().is_some_and(Collector::is_list)
+    }
+
+    /// True if the innermost object is marked as one.
+    pub fn is_marked_form(&self) -> bool {
+        self.open.last().is_some_and(|collector| collector.role == Some(Role::Form))
+    }
+
+    /// True for the node of the innermost object.
+    pub fn is_innermost(&self, node: Node) -> bool {
+        self.open.last().is_some_and(|collector| collector.node == node.id())
+    }
+
+    /// True if the innermost object is a clone of a form.
+    pub fn is_clone(&self) -> bool {
+        self.open.last().is_some_and(|collector| collector.role == Some(Role::Clone))
+    }
+
+    /// Where the innermost object, a clone, stands.
+    pub fn place(&mut self, pose: Affine) {
+        if let Some(collector) = self.open.last_mut() {
+            collector.pose = pose;
+        }
+    }
+
+    /// True if a node lies in a display list.
+    pub fn is_in_form(&self, node: Node) -> bool {
+        node.ancestors().any(|ancestor| {
+            self.open.iter().any(|open| open.is_list() && open.node == ancestor.id())
+                || matches!(role_of(self.resolver, ancestor), Ok(Some((Role::Form, _))))
+        })
+    }
+
+    /// Adds a clone to the innermost object, a display list.
+    pub fn add_clone(&mut self, node: Node, pose: Affine) {
+        let source = self.source(node);
+        if let Some(collector) = self.open.last_mut() {
+            collector.clones.push((collector.parts.len(), RawClone { node: node.id(), source, pose }));
+        }
+    }
+
+    pub fn finish(mut self) -> Result<Scene, Error> {
+        let forms = std::mem::take(&mut self.forms);
+        self.scene.forms = super::forms::resolve(self.resolver, forms, &mut self.scene.warnings)?;
         // A selection of some annotated containers narrows the run to those.
         if self.selected_containers.contains(&true) {
             let mut keep = self.selected_containers.iter();
             self.scene.containers.retain(|_| *keep.next().unwrap_or(&true));
         }
-        self.scene
+        Ok(self.scene)
+    }
+
+    fn source(&self, node: Node) -> Source {
+        let id = self.resolver.reference(node);
+        let label = node
+            .attribute((INKSCAPE, "label"))
+            .map_or_else(|| id.trim_start_matches("node:").to_owned(), str::to_owned);
+        Source { id, label, at: self.resolver.position(node) }
     }
 
     /// Opens a collector if the node has a role that counts here, or is selected.
     pub fn open(&mut self, node: Node, situation: &Situation) -> Result<bool, Error> {
         let found = role_of(self.resolver, node)?.filter(|(role, _)| match (situation.in_clone, role) {
             (true, role) => *role == Role::Spine,
-            (false, role) => !situation.in_defs || matches!(role, Role::Element | Role::Spine),
+            (false, role) => {
+                !situation.in_defs || matches!(role, Role::Element | Role::Spine | Role::Form | Role::Clone)
+            }
         });
         let role = found.as_ref().map(|(role, _)| *role);
         self.scene.warnings.extend(found.and_then(|(_, warning)| warning));
@@ -83,18 +163,17 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
             return Ok(false);
         }
         self.check_nesting(node, role)?;
-        let id = self.resolver.reference(node);
-        let label = node
-            .attribute((INKSCAPE, "label"))
-            .map_or_else(|| id.trim_start_matches("node:").to_owned(), str::to_owned);
-        let source = Source { id, label, at: self.resolver.position(node) };
         self.open.push(Collector {
             role,
-            source,
+            source: self.source(node),
             node: node.id(),
+            is_group: node.tag_name().name() == "g",
             selected: situation.selected,
             parts: Vec::new(),
             spines: Vec::new(),
+            drawn: Vec::new(),
+            clones: Vec::new(),
+            pose: Affine::IDENTITY,
         });
         Ok(true)
     }
@@ -145,30 +224,89 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
                 self.scene.sprays.push(Stroke { source, path, width });
             }
             Some(Role::Fixed) => self.scene.fixed.push(Fixed { source: done.source, parts: done.parts }),
-            Some(Role::Seed) => self.seed(done.guide()),
+            Some(Role::Seed) => {
+                let seed = self.middle(done.guide());
+                self.scene.seeds.extend(seed);
+            }
             Some(Role::Spine) => self.spine(&done.guide())?,
             Some(Role::Element) => self.element(done)?,
+            Some(Role::Tack) => {
+                let tack = self.middle(done.guide());
+                self.scene.tacks.extend(tack);
+            }
+            Some(Role::Form) => self.form(done),
+            Some(Role::Clone) => self.close_clone(done),
             // Read by the generators that use them, once they do.
-            Some(Role::Form | Role::Clone | Role::Tack | Role::Reference | Role::Rules) => {}
-            None if done.parts.iter().any(|part| is_closed(&part.path)) => self.container(done),
-            None if done.parts.is_empty() => {}
-            None => self.scene.guides.push(Guide { marked: false, ..done.guide() }),
+            Some(Role::Reference | Role::Rules) => {}
+            // A selected group with clones of its own shapes is a form without a mark, for those who
+            // look for one, and a shape for others.
+            None if !done.clones.is_empty() => {
+                self.form(done.clone());
+                self.shape(done);
+            }
+            None => self.shape(done),
         }
         Ok(())
     }
 
+    /// A selected object without a mark.
+    fn shape(&mut self, done: Collector) {
+        match &done.parts[..] {
+            parts if parts.iter().any(|part| is_closed(&part.path)) => self.container(done),
+            [] => {}
+            _ => self.scene.guides.push(Guide { marked: false, ..done.guide() }),
+        }
+    }
+
     /// The middle of what is drawn; a path that only moves is a point.
-    fn seed(&mut self, Guide { source, path, .. }: Guide) {
+    fn middle(&mut self, Guide { source, path, .. }: Guide) -> Option<Seed> {
         let mut points = path.elements().iter().flat_map(points_of);
         let Some(first) = points.next() else {
-            self.warn(format!("{}: the seed '{}' has nothing drawn in it", source.at, source.id));
-            return;
+            self.warn(format!("{}: the mark '{}' has nothing drawn in it", source.at, source.id));
+            return None;
         };
         let bounds = match path.segments().next() {
             Some(_) => path.bounding_box(),
             None => points.fold(Rect::from_points(first, first), |bounds, p| bounds.union_pt(p)),
         };
-        self.scene.seeds.push(Seed { at: bounds.center(), source });
+        Some(Seed { at: bounds.center(), source })
+    }
+
+    fn form(&mut self, done: Collector) {
+        let overrides = self.overrides(done.node);
+        let Collector { role, source, node, selected, parts, drawn, clones, .. } = done;
+        let mut clones = clones.into_iter().peekable();
+        let mut items = Vec::new();
+        for (i, (part, drawn)) in parts.into_iter().zip(drawn).enumerate() {
+            while let Some((_, clone)) = clones.next_if(|(before, _)| *before <= i) {
+                items.push(RawItem::Clone(clone));
+            }
+            if !drawn.of_clone {
+                items.push(RawItem::Primitive(Primitive { part, when: drawn.when, live: drawn.live }));
+            }
+        }
+        items.extend(clones.map(|(_, clone)| RawItem::Clone(clone)));
+        self.forms.push(RawForm { node, source, selected, marked: role.is_some(), items, overrides });
+    }
+
+    /// A marked clone goes into the form around it.
+    fn close_clone(&mut self, Collector { source, node, pose, .. }: Collector) {
+        match self.open.last_mut() {
+            Some(form) if form.is_list() => {
+                form.clones.push((form.parts.len(), RawClone { node, source, pose }));
+            }
+            _ => self.warn(format!("{}: the clone '{}' is in no form and is not used", source.at, source.id)),
+        }
+    }
+
+    /// Parameters that an object sets for itself.
+    fn overrides(&self, node: NodeId) -> BTreeMap<String, String> {
+        let node = self.resolver.xml.get_node(node);
+        let ours = node
+            .iter()
+            .flat_map(|node| node.attributes())
+            .filter(|a| a.namespace() == Some(NAMESPACE) && !matches!(a.name(), "role" | "parent"));
+        ours.map(|a| (a.name().to_owned(), a.value().to_owned())).collect()
     }
 
     fn container(&mut self, done: Collector) {
@@ -177,12 +315,7 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
             .iter()
             .find(|part| part.style.is_filled())
             .map(|part| part.style.get("fill").unwrap_or("#000000").to_owned());
-        let node = self.resolver.xml.get_node(done.node);
-        let ours = node
-            .iter()
-            .flat_map(|node| node.attributes())
-            .filter(|a| a.namespace() == Some(NAMESPACE) && a.name() != "role");
-        let overrides = ours.map(|a| (a.name().to_owned(), a.value().to_owned())).collect();
+        let overrides = self.overrides(done.node);
         let outlines = done.parts.into_iter().map(root_outline).collect();
         self.scene.containers.push(Container { source: done.source, outlines, fill, overrides });
         self.selected_containers.push(done.selected);
@@ -258,6 +391,11 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
 }
 
 impl Collector {
+    /// True for a form, and for a selected group, which may be one without a mark.
+    fn is_list(&self) -> bool {
+        self.role == Some(Role::Form) || (self.role.is_none() && self.is_group)
+    }
+
     /// All shapes as one path.
     fn guide(self) -> Guide {
         let mut outlines = self.parts.into_iter().map(|part| root_outline(part).path);

@@ -6,7 +6,7 @@ use crate::style::Cascade;
 use crate::units::{self, Axis, Units};
 use crate::vocabulary::{NAMESPACE, SVG, XLINK};
 use crate::xml::PlainAttribute;
-use kurbo::{Affine, Rect, Size};
+use kurbo::{Affine, Point, Rect, Size};
 use roxmltree::{Document, Node, NodeId};
 use std::cell::OnceCell;
 use std::collections::HashMap;
@@ -220,16 +220,20 @@ pub(crate) fn own_transform(node: Node, units: &Units) -> Result<Affine, String>
         return Ok(css_transform(node).unwrap_or(Affine::IDENTITY));
     };
     let transform = units::transform(text).ok_or_else(|| "its transform cannot be read".to_owned())?;
-    let Some(origin) = node.plain("transform-origin") else { return Ok(transform) };
-    let mut sides = origin.split_whitespace();
+    let origin = transform_origin(node, units).to_vec2();
+    Ok(Affine::translate(origin) * transform * Affine::translate(-origin))
+}
+
+/// The point that a node's `transform` attribute is about.
+pub(crate) fn transform_origin(node: Node, units: &Units) -> Point {
+    let mut sides = node.plain("transform-origin").unwrap_or("").split_whitespace();
     let mut side = |axis| {
         sides
             .next()
             .and_then(|text| keyword(text).or(Some(text)).and_then(|text| units.resolve(text, axis)))
             .unwrap_or(0.0)
     };
-    let (x, y) = (side(Axis::X), side(Axis::Y));
-    Ok(Affine::translate((x, y)) * transform * Affine::translate((-x, -y)))
+    Point::new(side(Axis::X), side(Axis::Y))
 }
 
 fn keyword(text: &str) -> Option<&'static str> {

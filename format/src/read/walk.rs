@@ -1,10 +1,11 @@
 //! The walk itself: coordinates and styles from the root down, clones followed.
 
-use super::collect::{Gathering, Situation};
+use super::collect::{Drawn, Gathering, Situation};
+use super::forms::shift_of_use;
 use super::resolver::{Resolver, is_svg, nested_viewport, own_transform};
 use crate::artwork::Part;
 use crate::error::Error;
-use crate::scene::Scene;
+use crate::scene::{Live, Scene, When};
 use crate::style::Style;
 use crate::units::{Axis, Units, mean_scale};
 use crate::vocabulary::NAMESPACE;
@@ -39,6 +40,10 @@ struct Place<'a, 'i> {
     viewport: Size,
     /// The parent's style.
     style: Rc<Style>,
+    /// Once entered: from the parent's coordinates to the root's, and the parent's style if that
+    /// matters.
+    frame: Affine,
+    inherited: Rc<Style>,
     /// Inside `<defs>`, where only templates are looked for.
     in_defs: bool,
     /// Inside `display:none` or a definition, where only annotated objects count.
@@ -53,6 +58,10 @@ struct Walk<'r, 'a, 'i> {
     /// Targets of the `<use>` elements around, to find clones that contain themselves.
     uses: Vec<NodeId>,
     used: HashSet<NodeId>,
+    /// The outermost `<use>` around, as a display list refers to it.
+    outer_use: Drawn,
+    /// True if the next `<use>` entered replicates a form.
+    is_replica: bool,
     counts: Counts,
 }
 
@@ -76,20 +85,25 @@ pub(super) fn walk(resolver: &Resolver, selection: HashSet<NodeId>) -> Result<Sc
         gathering: Gathering::new(resolver),
         uses: Vec::new(),
         used: HashSet::new(),
+        outer_use: Drawn::default(),
+        is_replica: false,
         counts: Counts::default(),
     };
+    let style = Rc::new(resolver.cascade.computed(root, &Style::initial(), &units));
     walk.push_children(&Place {
         node: root,
         transform: Affine::IDENTITY,
         viewport: units.viewport,
-        style: Rc::new(resolver.cascade.computed(root, &Style::initial(), &units)),
+        inherited: Rc::clone(&style),
+        style,
+        frame: Affine::IDENTITY,
         in_defs: false,
         hidden: false,
     });
     while let Some(visit) = walk.stack.pop() {
         walk.visit(visit)?;
     }
-    Ok(walk.gathering.finish())
+    walk.gathering.finish()
 }
 
 impl<'a, 'i> Walk<'_, 'a, 'i> {
@@ -129,7 +143,7 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
         let node = place.node;
         let name = node.tag_name().name();
         let is_result = node.attribute((NAMESPACE, "result")).is_some();
-        if !is_svg(&node, name) || is_result || is_never_drawn(name) {
+        if !is_svg(&node, name) || is_result || is_never_drawn(name) || self.is_other_step(node) {
             return Ok(());
         }
         self.count(node)?;
@@ -154,6 +168,10 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
             }
         }
         let units = Units { viewport: place.viewport, em: place.style.font_size() };
+        place.frame = place.transform;
+        if self.gathering.is_form() {
+            place.inherited = Rc::clone(&place.style);
+        }
         // A group with a broken transform is entered only for what is annotated below it,
         // and that has no place either.
         place.transform *= own_transform(node, &units).map_err(|what| self.broken(node, &what))?;
@@ -166,6 +184,12 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
             return Ok(());
         }
         self.content(place, &units)
+    }
+
+    /// True for a step of an exploration that was not selected.
+    fn is_other_step(&self, node: Node) -> bool {
+        node.attribute((NAMESPACE, "step")).is_some()
+            && !node.descendants().any(|below| self.selection.contains(&below.id()))
     }
 
     /// Counts a node of a clone's content.
@@ -187,6 +211,9 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
     fn content(&mut self, mut place: Place<'a, 'i>, units: &Units) -> Result<(), Error> {
         let node = place.node;
         let is_drawn = !self.gathering.is_empty() && !place.hidden;
+        if !self.in_clone() && self.replicates(&place, units)? {
+            return Ok(());
+        }
         match node.tag_name().name() {
             "use" if is_drawn => self.enter_use(&place, units),
             "use" => Ok(()),
@@ -212,8 +239,59 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
         }
     }
 
+    /// True if a node is a clone of a form and not a drawn part of one; it is noted then.
+    fn replicates(&mut self, place: &Place<'a, 'i>, units: &Units) -> Result<bool, Error> {
+        let node = place.node;
+        let is_use = node.tag_name().name() == "use";
+        let pose = if is_use { place.transform * shift_of_use(node, units) } else { place.transform };
+        if self.gathering.is_clone() {
+            self.gathering.place(pose);
+            return Ok(true);
+        }
+        if !is_use || !self.gathering.is_form() {
+            return Ok(false);
+        }
+        // A use of something else is drawn like any other shape.
+        let is_marked = self.gathering.is_marked_form();
+        let target = self.resolver.href(node)?;
+        let is_clone = target.map_or(is_marked, |target| self.gathering.is_in_form(target));
+        if !is_clone {
+            return Ok(false);
+        }
+        self.gathering.add_clone(node, pose);
+        // In a group without a mark, which may be meant as a shape, it is drawn all the same.
+        self.is_replica = !is_marked && target.is_some_and(|target| !node.ancestors().any(|a| a == target));
+        Ok(!self.is_replica)
+    }
+
+    /// What a display list knows of a node beyond its shape.
+    fn drawn(&self, place: &Place) -> Drawn {
+        if self.in_clone() {
+            return self.outer_use.clone();
+        }
+        let id = place.node.plain("id").filter(|id| !id.is_empty());
+        let live =
+            id.map(|id| Live { id: id.to_owned(), frame: place.frame, inherited: place.inherited.css() });
+        // Its own word, or that of a group around it; the form's is a parameter.
+        let when = place
+            .node
+            .ancestors()
+            .take_while(|&node| !self.gathering.is_innermost(node))
+            .find_map(|node| node.attribute((NAMESPACE, "generations")));
+        let when = match when.map(str::trim) {
+            Some("last") => When::Last,
+            Some("inner") => When::Inner,
+            _ => When::AsForm,
+        };
+        Drawn { when, live, of_clone: false }
+    }
+
     fn enter_use(&mut self, place: &Place<'a, 'i>, units: &Units) -> Result<(), Error> {
         let node = place.node;
+        if self.gathering.is_form() && !self.in_clone() {
+            let of_clone = std::mem::take(&mut self.is_replica);
+            self.outer_use = Drawn { of_clone, ..self.drawn(place) };
+        }
         let Some(target) = self.resolver.href(node)? else {
             self.gathering.warn(format!(
                 "{}: a clone refers to nothing in this drawing and is left out",
@@ -237,8 +315,7 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
         }
         let side = |name, axis| node.plain(name).and_then(|text| units.resolve(text, axis));
         let mut inner = place.clone();
-        inner.transform *=
-            Affine::translate((side("x", Axis::X).unwrap_or(0.0), side("y", Axis::Y).unwrap_or(0.0)));
+        inner.transform *= shift_of_use(node, units);
         inner.in_defs = false;
         inner.node = target;
         self.uses.push(target.id());
@@ -301,7 +378,9 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
             )
             .at(self.resolver.position(place.node)));
         }
-        self.gathering.add(Part { path, transform: place.transform, style: place.style.as_ref().clone() });
+        let part = Part { path, transform: place.transform, style: place.style.as_ref().clone() };
+        let drawn = if self.gathering.is_form() { self.drawn(place) } else { Drawn::default() };
+        self.gathering.add(part, drawn);
         Ok(())
     }
 

@@ -25,7 +25,7 @@ pub fn artwork(leaves: usize) -> Artwork {
         }
         Item::new("leaf", parts)
     });
-    let group = Group { name: "elements".into(), hidden: false, items: items.collect() };
+    let group = Group { name: "elements".into(), hidden: false, items: items.collect(), stream: None };
     Artwork { groups: vec![group], complete: true, decimals: 3, ..Artwork::default() }
 }
 

@@ -1,5 +1,6 @@
 //! Geometry that several generators share. Nothing here knows of scenes or artwork.
 
+pub mod affine;
 pub mod bend;
 pub mod boolean;
 pub mod catmull_rom;

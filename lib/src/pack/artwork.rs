@@ -104,7 +104,7 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
     let mut warnings = scene.warnings.clone();
     warnings.extend(prepared.warnings.iter().cloned());
     warnings.extend(made.bare_spines());
-    Artwork { symbols: Vec::new(), groups, complete, warnings, counts: made.counts(), decimals }
+    Artwork { groups, complete, warnings, counts: made.counts(), decimals, ..Artwork::default() }
 }
 
 /// A built-in part in a palette's tone. Its holes are holes, so one tone is enough.

@@ -54,15 +54,14 @@ impl Layers {
             let pose = shift * placed.pose;
             let group = if art.central { &mut self.flowers } else { &mut self.elements };
             if plant.params.copies {
-                let moved =
-                    |part: Part| Part { path: pose * part.path, transform: Affine::IDENTITY, ..part };
+                let moved = |part: Part| Part { path: pose * part.path, transform: Affine::IDENTITY, ..part };
                 let parts = painted(art, placed.size, tones, decimals).into_iter().map(moved).collect();
                 group.items.push(Item::new(art.id.clone(), parts));
                 continue;
             }
             let symbol = *symbols.entry(placed.art).or_insert_with(|| {
                 let name = format!("{}{}", art.id, self.symbols.len() + 1);
-                self.symbols.push(Symbol { name, parts: painted(art, 1.0, tones, SYMBOL_DECIMALS) });
+                self.symbols.push(Symbol::new(name, painted(art, 1.0, tones, SYMBOL_DECIMALS)));
                 self.symbols.len() - 1
             });
             group.items.push(Item::cloned(art.id.clone(), symbol, pose));
@@ -91,7 +90,8 @@ impl Layers {
             "lines" => {
                 for stem in &plant.stems {
                     let (path, style) = (stem.centre_line(tolerance), line(stem.taper.start, tone));
-                    let items = shifted(stem).into_iter().map(|by| item(name(stem), by * &path, style.clone()));
+                    let items =
+                        shifted(stem).into_iter().map(|by| item(name(stem), by * &path, style.clone()));
                     self.stems.items.extend(items);
                 }
                 return;
@@ -118,9 +118,8 @@ impl Layers {
                 order.sort_by_key(|stem| std::cmp::Reverse(stem.level));
                 for stem in order {
                     let path = stem.outline(tolerance);
-                    let items = shifted(stem)
-                        .into_iter()
-                        .map(|by| item(name(stem), by * &path, Style::filled(tone)));
+                    let items =
+                        shifted(stem).into_iter().map(|by| item(name(stem), by * &path, Style::filled(tone)));
                     self.stems.items.extend(items);
                 }
             }

@@ -103,8 +103,7 @@ impl Art {
         // What is farthest from the stem meets others first.
         outline.sort_by(|p, q| q.to_vec2().hypot2().total_cmp(&p.to_vec2().hypot2()));
         let outline = outline.into_iter().map(|p| (p, APART));
-        let inside: Vec<(Point, f64)> =
-            silhouette.inside().into_iter().map(|p| (p, 0.9 * INSIDE)).collect();
+        let inside: Vec<(Point, f64)> = silhouette.inside().into_iter().map(|p| (p, 0.9 * INSIDE)).collect();
         Art {
             id,
             builtin,
@@ -204,7 +203,8 @@ impl Silhouette {
         let cell = (bounds.size().max_side() / Self::SQUARES).max(f64::MIN_POSITIVE);
         let count = |side: f64| (side / cell) as usize + 1;
         let (columns, rows) = (count(bounds.width()), count(bounds.height()));
-        let mut silhouette = Silhouette { bounds, lines, cell, columns, covered: vec![false; columns * rows] };
+        let mut silhouette =
+            Silhouette { bounds, lines, cell, columns, covered: vec![false; columns * rows] };
         for contours in &fills {
             cover_wound(contours, bounds.origin(), cell, columns, &mut silhouette.covered);
         }

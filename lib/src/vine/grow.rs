@@ -355,8 +355,7 @@ impl<'a> Plant<'a> {
         let clear = 0.5 * (parent.width(s) + branch.taper.start) + self.sizes.gap;
         let mut has_left = false;
         branch.nodes.iter().take_while(|node| node.s < 1.2 * SHARE * length).all(|node| {
-            let is_clear =
-                near.windows(2).all(|pair| point_segment(node.p, pair[0].p, pair[1].p) > clear);
+            let is_clear = near.windows(2).all(|pair| point_segment(node.p, pair[0].p, pair[1].p) > clear);
             has_left |= is_clear;
             is_clear || !has_left
         })
@@ -424,8 +423,7 @@ impl<'a> Plant<'a> {
                 return false;
             }
             let owner = self.cells.owner(at);
-            owner.id() != Some(fork.id)
-                && !(self.params.plait && owner != Owner::OUTSIDE)
+            owner.id() != Some(fork.id) && !(self.params.plait && owner != Owner::OUTSIDE)
         })
     }
 
@@ -500,7 +498,8 @@ impl<'a> Plant<'a> {
             }
             let other = owner.id().filter(|_| self.params.plait && left);
             let same = other.is_some()
-                && at_other.is_none_or(|(id, at): (u32, f64)| Some(id) == other && (at - place).abs() < nearby)
+                && at_other
+                    .is_none_or(|(id, at): (u32, f64)| Some(id) == other && (at - place).abs() < nearby)
                 && was_at.is_none_or(|at| (at - place).abs() < nearby);
             at_other = at_other.or(other.map(|id| (id, place)));
             same

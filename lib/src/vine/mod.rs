@@ -40,8 +40,8 @@ use kurbo::Point;
 use params::Sizes;
 use particle::Charge;
 use rinceau_format::{Artwork, Error, Guide, Scene};
-use std::collections::BTreeMap;
 use start::Ground;
+use std::collections::BTreeMap;
 use stem::Stem;
 
 /// Stems of one container at most.
@@ -104,7 +104,15 @@ pub fn generate(
         return Err(Error::new("nothing-fits", "No stem fits into the shape", remedy));
     }
     let (groups, symbols) = layers.into_parts();
-    Ok(Artwork { symbols, groups, complete, warnings, counts, decimals: shapes.decimals() })
+    Ok(Artwork {
+        symbols,
+        groups,
+        complete,
+        warnings,
+        counts,
+        decimals: shapes.decimals(),
+        ..Artwork::default()
+    })
 }
 
 /// Errors on a seed outside every container.
@@ -256,8 +264,7 @@ impl Container<'_> {
                 drawn.extend(part);
             }
         }
-        let seeds =
-            self.scene.seeds.iter().map(|seed| seed.at).filter(|&at| plant.cells.is_free(at));
+        let seeds = self.scene.seeds.iter().map(|seed| seed.at).filter(|&at| plant.cells.is_free(at));
         let mut seeds: Vec<Option<Point>> = seeds.map(Some).collect();
         self.planned = !drawn.is_empty() || !seeds.is_empty() || plant.params.stem == "curl";
         if drawn.is_empty() && seeds.is_empty() {

@@ -110,8 +110,8 @@ pub fn pieces(artwork: &Artwork, group: &str) -> Vec<Piece> {
     let items = artwork.group(group).map(|group| group.items.as_slice()).unwrap_or_default();
     let of_item = |item: &Item| {
         let (parts, pose) = match item.clone {
-            Some((symbol, pose)) => (&artwork.symbols[symbol].parts, pose),
-            None => (&item.parts, Affine::IDENTITY),
+            Some((symbol, pose)) => (artwork.symbols[symbol].parts().collect::<Vec<_>>(), pose),
+            None => (item.parts.iter().collect(), Affine::IDENTITY),
         };
         parts.iter().flat_map(|part| contours(&(pose * part.transform * part.path.clone()))).collect()
     };
