@@ -80,9 +80,16 @@ pub enum SymbolItem {
 /// Pieces that are made while they are written, because there may be more than memory should
 /// hold.
 pub trait Stream: fmt::Debug + Send + Sync {
-    /// Visits every piece in drawing order: what it is a copy of, its path and transform, and its
-    /// style as CSS. The same pieces every time.
-    fn each(&self, visit: &mut dyn FnMut(&str, &BezPath, Affine, &str));
+    /// Gives every piece in drawing order. The same pieces every time.
+    fn each(&self, pieces: &mut dyn Pieces);
+}
+
+/// Takes the pieces of a [`Stream`].
+pub trait Pieces {
+    /// A piece begins: what it is a copy of, its transform, and its style as CSS.
+    fn begin(&mut self, of: &str, transform: Affine, style: &str);
+    /// A path of the piece, and the map that its points go through.
+    fn add(&mut self, path: &BezPath, pose: Affine);
 }
 
 /// A sublayer of the result.

@@ -37,7 +37,7 @@ mod vocabulary;
 mod write;
 mod xml;
 
-pub use artwork::{Artwork, Group, Item, Part, Step, Stream, Symbol, SymbolItem};
+pub use artwork::{Artwork, Group, Item, Part, Pieces, Step, Stream, Symbol, SymbolItem};
 pub use document::{Document, Layer};
 pub use error::{Error, Position};
 pub use limits::Limits;

@@ -1,6 +1,8 @@
 //! Artwork to a result layer.
 
-use crate::artwork::{Artwork, Group, Item, Part, Stream, Symbol, SymbolItem};
+mod stream;
+
+use crate::artwork::{Artwork, Group, Item, Part, Symbol, SymbolItem};
 use crate::number::{write_number, write_path_data};
 use crate::recipe::Recipe;
 use crate::vocabulary::{INKSCAPE, NAMESPACE, SODIPODI, SVG, XLINK};
@@ -47,6 +49,18 @@ impl<'a> Sink<'a> {
         const SOME: usize = 1 << 16;
         if self.text.len() >= SOME {
             self.flush();
+        }
+    }
+
+    /// Adds text as bytes, behind what there is.
+    fn put(&mut self, bytes: &[u8]) {
+        if self.out.is_none() {
+            self.text.push_str(&String::from_utf8_lossy(bytes));
+            return;
+        }
+        self.flush();
+        if let (Some(out), None) = (self.out.as_mut(), &self.failed) {
+            self.failed = out.write_all(bytes).err();
         }
     }
 
@@ -204,47 +218,9 @@ fn sublayer(sink: &mut Sink, group: &Group, artwork: &Artwork, target: &Target) 
         sink.flush_some();
     }
     if let Some(stream) = &group.stream {
-        write_stream(sink, stream.as_ref(), &id, artwork.decimals, target);
+        stream::write_stream(sink, stream.as_ref(), &id, artwork.decimals, target);
     }
     let _ = write!(sink.text, "{newline}</{prefix}g>");
-}
-
-/// The pieces of a stream, in groups.
-fn write_stream(sink: &mut Sink, stream: &dyn Stream, id: &str, decimals: usize, target: &Target) {
-    let (prefix, newline) = (target.svg_prefix, target.newline);
-    let is_root = target.inverse == Affine::IDENTITY;
-    let mut count = 0;
-    stream.each(&mut |of, path, transform, style| {
-        let out = &mut sink.text;
-        if count % SIBLINGS == 0 {
-            if count > 0 {
-                let _ = write!(out, "{newline}</{prefix}g>");
-            }
-            let _ = write!(out, "{newline}<{prefix}g id=\"{id}-g{}\">", count / SIBLINGS + 1);
-        }
-        count += 1;
-        out.push_str(newline);
-        out.push('<');
-        out.push_str(prefix);
-        out.push_str("path id=\"");
-        out.push_str(id);
-        out.push('-');
-        write_number(out, count as f64, 0);
-        out.push('"');
-        attribute(out, "rinceau:of", of);
-        let transform = if is_root { transform } else { target.inverse * transform };
-        if transform != Affine::IDENTITY {
-            attribute(out, "transform", &matrix(transform, MATRIX_DECIMALS));
-        }
-        attribute(out, "style", style);
-        out.push_str(" d=\"");
-        write_path_data(out, path, decimals);
-        out.push_str("\"/>");
-        sink.flush_some();
-    });
-    if count > 0 {
-        let _ = write!(sink.text, "{newline}</{prefix}g>");
-    }
 }
 
 fn write_item(out: &mut String, item: &Item, id: &str, artwork: &Artwork, target: &Target) {

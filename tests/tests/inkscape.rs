@@ -146,6 +146,53 @@ fn a_selected_shape_grows_a_vine_and_grows_anew() {
     assert!(elements(layer).len() > 5);
 }
 
+/// Motif and clone made as an artist makes them: clone, move, turn, shrink, group.
+#[test]
+fn a_motif_and_its_clone_repeat_and_repeat_anew() {
+    let user = User::new();
+    let plain = svg(
+        "<g id=\"art\" transform=\"translate(5,5)\"><path id=\"trunk\" d=\"M 90,180 V 120\" style=\"fill:none;stroke:#224466;stroke-width:6\"/></g>",
+    );
+    let cloned = user.edit(
+        &plain,
+        "select-by-id:trunk;clone;transform-translate:0,-60;transform-rotate:30;select-by-id:trunk;selection-group",
+    );
+    let xml = parse(&cloned);
+    let clone = xml.descendants().find(|node| node.tag_name().name() == "use").expect("a clone");
+    let group = clone.parent_element().unwrap().attribute("id").unwrap().to_owned();
+    let once = user.edit(&cloned, &format!("select-by-id:{group};org.rinceau.recurse.noprefs"));
+    assert_eq!(rest(&once), rest(&cloned));
+    let xml = parse(&once);
+    let [layer] = layers(&xml)[..] else { panic!("{} layers:\n{once:.3000}", layers(&xml).len()) };
+    assert_eq!(layer.attribute((RINCEAU, "result")), Some("recurse"));
+    assert_eq!(layer.attribute((RINCEAU, "source")), Some(group.as_str()));
+    let made = sublayer(layer, "form");
+    let data: Vec<&str> = made.descendants().filter_map(|node| node.attribute("d")).collect();
+    let lines: usize = data.iter().map(|d| d.matches(['M', 'm']).count()).sum();
+    assert_eq!(lines, 5, "a line for each generation: {data:?}");
+
+    let twice = user.edit(&once, &format!("select-by-id:{group};org.rinceau.recurse.noprefs"));
+    assert_eq!(layers(&parse(&twice)).len(), 1);
+    assert_eq!(rest(&twice), rest(&cloned));
+}
+
+/// A tack, a guide and a clone, in one session.
+#[test]
+fn a_clone_is_dragged_about_a_tack() {
+    let user = User::new();
+    let plain = svg(
+        "<rect id=\"square\" x=\"20\" y=\"20\" width=\"20\" height=\"20\"/>\n<use id=\"copy\" href=\"#square\" xlink:href=\"#square\" xmlns:xlink=\"http://www.w3.org/1999/xlink\"/>\n<circle id=\"pin\" cx=\"20\" cy=\"20\" r=\"1\"/>\n<path id=\"way\" d=\"M 40,20 L 20,60\"/>",
+    );
+    let after = user.edit(
+        &plain,
+        "select-by-id:pin;org.rinceau.mark-tack.noprefs;select-clear;select-by-id:way;org.rinceau.mark-guide.noprefs;select-clear;select-by-id:copy;org.rinceau.tack-drag.noprefs",
+    );
+    let xml = parse(&after);
+    // A quarter turn, and twice as large, about the tack.
+    assert_eq!(by_id(&xml, "copy").attribute("transform"), Some("matrix(0 2 -2 0 60 -20)"));
+    assert_eq!(by_id(&xml, "square").attribute("transform"), None);
+}
+
 fn sublayer<'a, 'i>(layer: Node<'a, 'i>, label: &str) -> Node<'a, 'i> {
     let found = layer.children().find(|node| node.attribute((INKSCAPE, "label")) == Some(label));
     found.unwrap_or_else(|| panic!("no sublayer {label}"))

@@ -674,6 +674,105 @@ mod vines {
     }
 }
 
+mod forms {
+    use super::*;
+
+    /// A form around a square, and what else is in it.
+    fn form(clones: &str) -> Case {
+        recurse(svg(&format!(
+            "<g id='form' class='rinceau-form'><rect id='square' width='9' height='9'/>\n{clones}</g>"
+        )))
+    }
+
+    fn recurse(drawing: impl Into<Vec<u8>>) -> Case {
+        Case { generator: "recurse", ..case(drawing) }
+    }
+
+    const HALF: &str = "<use id='half' href='#square' transform='translate(9 9) scale(.5)'/>";
+
+    #[test]
+    fn that_are_none() {
+        insta::assert_snapshot!(recurse(svg("<rect width='9' height='9'/>")).refusal(), @"The drawing has no form. Group a motif with clones of it (Edit > Clone > Create Clone), then select the group or mark it as form. [no-form]");
+    }
+
+    #[test]
+    fn without_a_motif() {
+        insta::assert_snapshot!(recurse(svg("<g id='form' class='rinceau-form'/>")).refusal(), @"2:1: The form 'form' has nothing drawn in it. Draw the motif into its group, then clone it (Edit > Clone > Create Clone). [empty-form]");
+    }
+
+    #[test]
+    fn whose_last_generation_is_empty() {
+        let inner = "<g id='form' class='rinceau-form'><rect id='a' rinceau:generations='inner' width='9' height='9'/></g>";
+        insta::assert_snapshot!(recurse(svg(inner)).flag("depth", "1").refusal(), @"2:1: The form 'form' draws nothing in its generation 1. Draw all generations, or fewer of them. [empty-generation]");
+    }
+
+    #[test]
+    fn with_clones_of_nothing() {
+        insta::assert_snapshot!(form("<use id='lost' href='#gone' transform='scale(.5)'/>").refusal(), @"3:1: The clone 'lost' refers to nothing in this drawing. Clone a shape of the form again (Edit > Clone > Create Clone), or delete the clone. [missing-source]");
+        insta::assert_snapshot!(form("<use id='far' href='other.svg#square'/>").refusal(), @"3:1: The clone 'far' refers to nothing in this drawing. Clone a shape of the form again (Edit > Clone > Create Clone), or delete the clone. [missing-source]");
+        insta::assert_snapshot!(form("<use id='typed' rinceau:of='nobody' href='#square'/>").refusal(), @"3:1: The clone 'typed' refers to nothing in this drawing. Clone a shape of the form again (Edit > Clone > Create Clone), or delete the clone. [missing-source]");
+    }
+
+    #[test]
+    fn with_clones_in_a_ring() {
+        insta::assert_snapshot!(form("<use id='a' href='#b'/><use id='b' href='#a'/>").refusal(), @"3:1: The clone 'a' contains itself. Delete the clone, or unlink it (Edit > Clone > Unlink Clone). [clone-cycle]");
+    }
+
+    #[test]
+    fn with_flat_clones() {
+        insta::assert_snapshot!(form("<use id='flat' href='#square' transform='scale(1 0)'/>").refusal(), @"3:1: The clone 'flat' is scaled to nothing, or beyond all measure. Scale it back, or delete it. [flat-clone]");
+        insta::assert_snapshot!(form("<use id='line' href='#square' transform='matrix(1 1 1 1 0 0)'/>").refusal(), @"3:1: The clone 'line' is scaled to nothing, or beyond all measure. Scale it back, or delete it. [flat-clone]");
+    }
+
+    #[test]
+    fn with_clones_that_cannot_be_read() {
+        insta::assert_snapshot!(form("<use id='odd' href='#square' transform='matrix(NaN 0 0 1 0 0)'/>").refusal(), @"3:1: The object 'odd' cannot be read: its transform cannot be read. Redraw it, or clear its mark. [broken-object]");
+        insta::assert_snapshot!(form("<use id='vast' href='#square' transform='scale(1e300) scale(1e300)'/>").refusal(), @"3:1: The clone 'vast' is scaled to nothing, or beyond all measure. Scale it back, or delete it. [flat-clone]");
+    }
+
+    #[test]
+    fn with_more_copies_than_anyone_can_look_at() {
+        insta::assert_snapshot!(form(&HALF.repeat(2).replacen("half", "other", 1)).flag("depth", "40").refusal(), @"2:1: 40 generations of the form 'form' are more than 2000000 copies. At most 20 generations fit; or allow more copies. [too-many-copies]");
+        insta::assert_snapshot!(form(HALF).flag("depth", "1000000000").refusal(), @"2:1: 1000000000 generations of the form 'form' are more than 2000000 copies. At most 2000000 generations fit; or allow more copies. [too-many-copies]");
+        insta::assert_snapshot!(form(HALF).flag("depth", "1000000000").flag("most", "1e15").refusal(), @"2:1: 1000000000 generations of the form 'form' are more than 20000000 copies. At most 20000000 generations fit. [too-many-copies]");
+        let clone = |i| format!("<use id='c{i}' href='#square' transform='translate({i} 1) scale(.5)'/>");
+        let many: String = (0..10_000).map(clone).collect();
+        insta::assert_snapshot!(form(&many).refusal(), @"2:1: 5 generations of the form 'form' are more than 2000000 copies. At most 2 generations fit; or allow more copies. [too-many-copies]");
+        insta::assert_snapshot!(form(HALF).flag("min-size", "1e-300").flag("depth", "1000000000").flag("most", "1000").refusal(), @"2:1: The form 'form' has more than 1000 copies. Make its smallest copy larger, or draw fewer generations. [too-many-copies]");
+    }
+
+    #[test]
+    fn that_clones_cannot_show() {
+        insta::assert_snapshot!(form(HALF).flag("output", "clones").flag("min-size", "1").refusal(), @"2:1: A chain of clones repeats every copy to the last generation, however small. Choose paths as result, or set the smallest copy to 0. [clones-of-one-size]");
+        insta::assert_snapshot!(form(HALF).flag("output", "clones").flag("strokes", "fixed").refusal(), @"2:1: Clones keep neither strokes of one width nor joined lines. Choose paths as result, or let strokes scale and lines be. [paths-only]");
+        insta::assert_snapshot!(form(HALF).flag("output", "clones").flag("depth", "10001").refusal(), @"2:1: A chain of clones has at most 10000 generations. Draw fewer generations, or choose paths as result. [too-many-copies]");
+    }
+
+    #[test]
+    fn in_colours_that_are_none() {
+        insta::assert_snapshot!(form(HALF).flag("colours", "red,blueish").refusal(), @"2:1: 'blueish' is no colour. Write colours such as '#14444f,#d2913a', or drawn. [bad-colour]");
+    }
+
+    #[test]
+    fn that_a_sheet_cannot_change() {
+        insta::assert_snapshot!(form("").flag("sheet", "true").refusal(), @"2:1: The form 'form' has no clones to change. Clone its motif (Edit > Clone > Create Clone). [nothing-to-change]");
+    }
+
+    /// A clone that grows is drawn as far as there is any page, with a warning.
+    #[test]
+    fn that_grow_are_cut_off() {
+        let growing = "<use id='big' href='#square' transform='translate(9 9) scale(3)'/>";
+        let drawing =
+            svg(&format!("<g class='rinceau-form'><rect id='square' width='9' height='9'/>{growing}</g>"));
+        let done = rinceau(["recurse", "--depth", "1000"]).input(drawing).succeed();
+        let notes: Vec<&str> = done.stderr.lines().collect();
+        let [larger, left_out] = notes[..] else { panic!("{notes:?}") };
+        insta::assert_snapshot!(larger, @"rinceau: note: 2:65: the clone 'big' is larger than its source, so that every generation is");
+        insta::assert_snapshot!(left_out, @"rinceau: note: 2:1: the form 'node:1' grows: copies larger than any page are left out (1)");
+        assert!(done.text().matches('M').count() < 40 && !done.text().contains("NaN"));
+    }
+}
+
 /// A closed path, or what should be one, marked.
 fn marked(attributes: &str) -> Case {
     case(svg(&format!("<path id='shape' class='rinceau-container' {attributes}/>")))

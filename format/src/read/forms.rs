@@ -200,8 +200,8 @@ fn inverse(transform: Affine, source: &Source) -> Result<Affine, Error> {
     }
     Err(source.error(
         "flat-clone",
-        format!("The clone '{}' is scaled to nothing", source.id),
-        "Scale it up, or delete it",
+        format!("The clone '{}' is scaled to nothing, or beyond all measure", source.id),
+        "Scale it back, or delete it",
     ))
 }
 

@@ -4,7 +4,7 @@
 use super::colour::Ramp;
 use super::lists::{Entry, Lists, Reach};
 use kurbo::{Affine, BezPath, PathEl, Point};
-use rinceau_format::{Stream, Style};
+use rinceau_format::{FillRule, Pieces, Stream, Style};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -56,20 +56,21 @@ struct Frame {
     is_last: bool,
 }
 
-/// How much a transform enlarges at most.
-fn scale(pose: Affine) -> f64 {
+/// How much a transform enlarges at most, squared.
+fn scale2(pose: Affine) -> f64 {
     let [a, b, c, d, ..] = pose.as_coeffs();
-    (a * a + b * b).max(c * c + d * d).sqrt()
+    (a * a + b * b).max(c * c + d * d)
 }
 
 impl Expansion {
     /// Walks through the form in paint order until `visit` says false. True if it never did.
     pub fn walk(&self, mut visit: impl FnMut(Step) -> bool) -> bool {
         let lists = &self.lists.lists;
+        let (min2, max2) = (self.min_size * self.min_size, self.max_size * self.max_size);
         let frame = |list: usize, pose: Affine, generation: usize| {
-            let size = lists[list].size * scale(pose);
-            let is_last = generation >= self.reach.depth || size < self.min_size;
-            (size <= self.max_size).then_some(Frame { list, next: 0, pose, generation, is_last })
+            let size2 = lists[list].size * lists[list].size * scale2(pose);
+            let is_last = generation >= self.reach.depth || size2 < min2;
+            (size2 <= max2).then_some(Frame { list, next: 0, pose, generation, is_last })
         };
         if !visit(Step::Enter) {
             return false;
@@ -225,7 +226,7 @@ fn can_merge(style: &Style, path: &BezPath) -> bool {
     let has_stroke = style.stroke_width().is_some();
     let shape = match (style.is_filled(), has_stroke) {
         (true, true) => false,
-        (true, false) => subpaths == 1 && is_simple(path),
+        (true, false) => subpaths == 1 && style.fill_rule() == FillRule::NonZero && is_simple(path),
         (false, _) => true,
     };
     // The opacity of the whole is in the text alone.
@@ -268,65 +269,29 @@ fn is_simple(path: &BezPath) -> bool {
 /// Copies that become one path at most.
 const MERGED: usize = 200;
 
-/// Neighbours that become one path.
-struct Merging<'a, 'v> {
-    primitives: &'a [super::lists::Primitive],
-    visit: &'v mut dyn FnMut(&str, &BezPath, Affine, &str),
-    path: BezPath,
-    /// Style, first primitive, and how many there are.
-    open: Option<(usize, usize, usize)>,
-}
-
-impl Merging<'_, '_> {
-    fn add(&mut self, primitive: usize, look: &Look, merge: bool, looks: &Looks) {
-        let merges = merge && look.is_flat && looks.get(look.style).1;
-        match &mut self.open {
-            Some((style, _, count)) if merges && *style == look.style && *count < MERGED => *count += 1,
-            _ => {
-                self.flush(looks);
-                self.open = merges.then_some((look.style, primitive, 1));
-            }
-        }
-        let path = &self.primitives[primitive].path;
-        if !look.is_flat {
-            (self.visit)(&self.primitives[primitive].of, path, look.transform, looks.get(look.style).0);
-            return;
-        }
-        // Mirrored copies wind the other way, and would cut holes into those below.
-        if merges && look.transform.determinant() < 0.0 {
-            self.path.extend(look.transform * path.reverse_subpaths());
-        } else {
-            self.path.extend(path.elements().iter().map(|&el| look.transform * el));
-        }
-        if !merges {
-            self.put(primitive, look.style, looks);
-        }
-    }
-
-    fn flush(&mut self, looks: &Looks) {
-        if let Some((style, primitive, _)) = self.open.take() {
-            self.put(primitive, style, looks);
-        }
-    }
-
-    fn put(&mut self, primitive: usize, style: usize, looks: &Looks) {
-        (self.visit)(&self.primitives[primitive].of, &self.path, Affine::IDENTITY, looks.get(style).0);
-        self.path.truncate(0);
-    }
-}
-
 impl Stream for Expansion {
-    fn each(&self, visit: &mut dyn FnMut(&str, &BezPath, Affine, &str)) {
+    fn each(&self, pieces: &mut dyn Pieces) {
         let mut looks = Looks::default();
-        let primitives = &self.lists.primitives;
-        let mut merging = Merging { primitives, visit, path: BezPath::new(), open: None };
+        // Style of the piece that others may join, and how many there are in it.
+        let mut open: Option<(usize, usize)> = None;
         self.walk(|step| {
-            if let Step::Draw(drawn) = step {
-                let look = self.look(&drawn, &mut looks);
-                merging.add(drawn.primitive, &look, self.merge, &looks);
+            let Step::Draw(drawn) = step else { return true };
+            let primitive = &self.lists.primitives[drawn.primitive];
+            let look = self.look(&drawn, &mut looks);
+            let merges = self.merge && look.is_flat && looks.get(look.style).1;
+            match &mut open {
+                Some((style, count)) if merges && *style == look.style && *count < MERGED => *count += 1,
+                _ => {
+                    let transform = if look.is_flat { Affine::IDENTITY } else { look.transform };
+                    pieces.begin(&primitive.of, transform, looks.get(look.style).0);
+                    open = merges.then_some((look.style, 1));
+                }
             }
+            let pose = if look.is_flat { look.transform } else { Affine::IDENTITY };
+            // Mirrored copies wind the other way, and would cut holes into those below.
+            let is_turned = merges && look.transform.determinant() < 0.0;
+            pieces.add(if is_turned { &primitive.reversed } else { &primitive.path }, pose);
             true
         });
-        merging.flush(&looks);
     }
 }

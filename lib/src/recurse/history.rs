@@ -1,7 +1,7 @@
 //! A step of an exploration: which forms it is made of, and a small picture (checklist R-053).
 
 use super::expand::Expansion;
-use super::lists::{Entry, Reach};
+use super::lists::Reach;
 use super::sheet::picture;
 use super::{Run, fitted};
 use crate::progress::Progress;
@@ -16,7 +16,7 @@ const SIDE: f64 = 100.0;
 
 /// What is kept of a run.
 pub(super) fn step(run: &Run, expansion: &Expansion, progress: &mut dyn Progress) -> Result<Step, Error> {
-    let used = forms_used(run);
+    let used = run.lists.reached(run.root);
     let forms: Vec<&Form> = used.iter().map(|&form| &run.scene.forms[form]).collect();
     let reach = expansion.reach;
     let depth = run.lists.deepest(run.root, reach, MOST).max(1);
@@ -33,23 +33,6 @@ pub(super) fn step(run: &Run, expansion: &Expansion, progress: &mut dyn Progress
         digest: digest(&used, &forms),
         picture: picture(&Expansion { place, ..small }),
     })
-}
-
-/// The form and those that it repeats, each once.
-fn forms_used(run: &Run) -> Vec<usize> {
-    let mut used = vec![run.root];
-    let mut next = 0;
-    while let Some(&form) = used.get(next) {
-        next += 1;
-        for entry in &run.lists.lists[form].entries {
-            if let Entry::Clone(other, _) = *entry
-                && !used.contains(&other)
-            {
-                used.push(other);
-            }
-        }
-    }
-    used
 }
 
 /// A number that is the same for the same forms, whatever their names and wherever

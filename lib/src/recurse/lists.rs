@@ -19,6 +19,8 @@ pub(super) struct Primitive {
     /// Its id, or that of its form.
     pub of: String,
     pub path: BezPath,
+    /// The same the other way round.
+    pub reversed: BezPath,
     /// From the path's coordinates to user units of the root.
     pub base: Affine,
     pub style: Style,
@@ -65,7 +67,8 @@ impl Lists {
                     let (path, base) = (drawn.part.path.clone(), drawn.part.transform);
                     let hull = hull(&path, base);
                     let (style, when, live) = (drawn.part.style.clone(), drawn.when, drawn.live.clone());
-                    primitives.push(Primitive { of, path, base, style, when, live, hull });
+                    let reversed = path.reverse_subpaths();
+                    primitives.push(Primitive { of, path, reversed, base, style, when, live, hull });
                     Entry::Draw(primitives.len() - 1)
                 }
             };
@@ -136,20 +139,45 @@ impl Lists {
         ((drawn[root], entered[root]), reach.depth)
     }
 
-    /// Errors on a form that draws nothing, however deep.
-    pub fn check(&self, root: usize, form: &Form) -> Result<(), Error> {
-        let mut seen = vec![false; self.lists.len()];
-        let mut open = vec![root];
-        while let Some(list) = open.pop() {
-            if std::mem::replace(&mut seen[list], true) {
-                continue;
-            }
+    /// A list and those that it repeats, each once; the list first.
+    pub fn reached(&self, root: usize) -> Vec<usize> {
+        let mut reached = vec![root];
+        let mut next = 0;
+        while let Some(&list) = reached.get(next) {
+            next += 1;
             for entry in &self.lists[list].entries {
-                match *entry {
-                    Entry::Draw(_) => return Ok(()),
-                    Entry::Clone(other, _) => open.push(other),
+                if let Entry::Clone(other, _) = *entry
+                    && !reached.contains(&other)
+                {
+                    reached.push(other);
                 }
             }
+        }
+        reached
+    }
+
+    fn entries(&self, root: usize) -> impl Iterator<Item = &Entry> {
+        self.reached(root).into_iter().flat_map(|list| &self.lists[list].entries)
+    }
+
+    /// True if some clone is larger than its source.
+    pub fn grows(&self, root: usize) -> bool {
+        const LARGER: f64 = 1.000_001;
+        self.entries(root).any(|entry| match *entry {
+            Entry::Clone(_, by) => {
+                // The largest singular value, squared.
+                let (all, det) = (by.as_coeffs()[..4].iter().map(|c| c * c).sum::<f64>(), by.determinant());
+                let most = 0.5 * (all + (all * all - 4.0 * det * det).max(0.0).sqrt());
+                most > LARGER * LARGER
+            }
+            Entry::Draw(_) => false,
+        })
+    }
+
+    /// Errors on a form that draws nothing, however deep.
+    pub fn check(&self, root: usize, form: &Form) -> Result<(), Error> {
+        if self.entries(root).any(|entry| matches!(entry, Entry::Draw(_))) {
+            return Ok(());
         }
         Err(form.source.error(
             "empty-form",

@@ -44,7 +44,7 @@ const LARGEST: f64 = 1e4;
 /// Lists entered for a first look at how large a form is.
 const FIRST_LOOK: f64 = 50_000.0;
 /// Paths of one form at most, whatever is allowed: they would be a file of many gigabytes.
-const MOST_PATHS: f64 = 1e8;
+const MOST_PATHS: f64 = 2e7;
 /// Generations of a chain of clones at most.
 const LONGEST_CHAIN: usize = 10_000;
 
@@ -167,17 +167,11 @@ impl Run<'_> {
             return self.clones(&expansion, artwork);
         }
         expansion.min_size = min_size;
-        let survey = self.survey(&expansion, progress)?;
-        expansion.reach = survey.reach;
+        let survey = self.whole(&mut expansion, look, progress)?;
         artwork.complete &= survey.complete;
-        if survey.reach.depth > first.depth && self.frame.is_some() {
-            let back = expansion.place.inverse();
-            let all = survey.bounds.map(|bounds| back.transform_rect_bbox(bounds));
-            expansion.place = self.place(all);
-        }
         if survey.too_large > 0 {
             artwork.warnings.push(format!(
-                "{}: the copies of the form '{}' grow: {} of them are larger than any page and are left out",
+                "{}: the form '{}' grows: copies larger than any page are left out ({})",
                 self.form.source.at, self.form.source.id, survey.too_large
             ));
         }
@@ -194,6 +188,34 @@ impl Run<'_> {
         }
         artwork.groups.push(group);
         Ok(())
+    }
+
+    /// What the whole form comes to, and where it goes; a first look may know already.
+    fn whole(
+        &self,
+        expansion: &mut Expansion,
+        first: Survey,
+        progress: &mut dyn Progress,
+    ) -> Result<Survey, Error> {
+        let (is_full, is_sized) = (first.reach.depth == expansion.reach.depth, expansion.min_size > 0.0);
+        if is_full && first.complete && !is_sized {
+            return Ok(first);
+        }
+        // So many are written before anyone would have stopped them.
+        const QUICK: f64 = 2e6;
+        let (drawn, entered) = self.lists.count(self.root, expansion.reach, self.most());
+        let is_quick = drawn.max(entered) <= QUICK && progress.step("count", 0.5);
+        if is_quick && !is_sized && self.frame.is_none() && !self.lists.grows(self.root) {
+            return Ok(Survey { drawn, entered, reach: expansion.reach, complete: true, ..first });
+        }
+        let survey = self.survey(expansion, progress)?;
+        expansion.reach = survey.reach;
+        if survey.reach.depth > first.reach.depth && self.frame.is_some() {
+            let back = expansion.place.inverse();
+            let all = survey.bounds.map(|bounds| back.transform_rect_bbox(bounds));
+            expansion.place = self.place(all);
+        }
+        Ok(survey)
     }
 
     /// Copies that are allowed.
@@ -233,7 +255,7 @@ impl Run<'_> {
                 "{} generations of the form '{}' are more than {most} copies",
                 reach.depth, self.form.source.id
             ),
-            format!("{remedy}; or allow more copies"),
+            if most < self.params.most { remedy } else { format!("{remedy}; or allow more copies") },
         ))
     }
 
@@ -282,7 +304,7 @@ impl Run<'_> {
             return Err(self.form.source.error(
                 "too-many-copies",
                 format!("The form '{}' has more than {most} copies", self.form.source.id),
-                "Make its smallest copy larger, draw fewer generations, or allow more copies",
+                "Make its smallest copy larger, or draw fewer generations",
             ));
         }
         let mut reach = expansion.reach;
