@@ -156,12 +156,9 @@ fn symbols(out: &mut String, artwork: &Artwork, target: &Target) {
             match item {
                 SymbolItem::Part(part) => write_part(out, part, None, DECIMALS, &own),
                 SymbolItem::Symbol(other, pose) => {
-                    let id = symbol_id(target, &artwork.symbols[*other]);
-                    write_use(out, prefix, &id, &matrix(*pose, MATRIX_DECIMALS), "");
+                    write_use(out, prefix, &symbol_id(target, &artwork.symbols[*other]), *pose, "");
                 }
-                SymbolItem::Object(id, pose, style) => {
-                    write_use(out, prefix, id, &matrix(*pose, MATRIX_DECIMALS), style);
-                }
+                SymbolItem::Object(id, pose, style) => write_use(out, prefix, id, *pose, style),
             }
         }
         let _ = write!(out, "</{prefix}g>");
@@ -174,9 +171,11 @@ fn symbol_id(target: &Target, symbol: &Symbol) -> String {
 }
 
 /// A clone without an id.
-fn write_use(out: &mut String, prefix: &str, id: &str, transform: &str, style: &str) {
+fn write_use(out: &mut String, prefix: &str, id: &str, pose: Affine, style: &str) {
     let _ = write!(out, "<{prefix}use");
-    attribute(out, "transform", transform);
+    if pose != Affine::IDENTITY {
+        attribute(out, "transform", &matrix(pose, MATRIX_DECIMALS));
+    }
     if !style.is_empty() {
         attribute(out, "style", style);
     }

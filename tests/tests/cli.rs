@@ -961,13 +961,86 @@ mod vines {
     }
 }
 
+mod forms {
+    use super::*;
+
+    fn repeated(drawing: impl Into<Vec<u8>>, flags: &[&str]) -> String {
+        String::from_utf8(rinceau(["recurse"]).args(flags).input(drawing).succeed().stdout).unwrap()
+    }
+
+    #[test]
+    fn repeat_in_every_sample() {
+        for sample in geometry::samples_of("recurse") {
+            let name = sample.display().to_string();
+            let before = std::fs::read_to_string(&sample).unwrap();
+            let after = repeated(before.as_str(), &[]);
+            assert_only_a_layer_was_added(&before, &after, &name);
+            assert!(repeated(after.as_str(), &[]) == after, "{name}: a second run changes something");
+        }
+    }
+
+    /// Merged copies are many in one; nothing else is.
+    #[test]
+    fn have_ids_of_their_own_and_few_siblings() {
+        let tree = "<g class='rinceau-form'><rect id='a' width='20' height='50'/><use href='#a' transform='translate(90 9) scale(.9)'/><use href='#a' transform='translate(9 90) scale(.9)'/></g>";
+        let text = repeated(svg(tree), &["--depth", "11", "--merge", "false"]);
+        let xml = parse(&text);
+        let mut ids: Vec<&str> = xml.descendants().filter_map(|node| node.attribute("id")).collect();
+        let all = ids.len();
+        ids.sort_unstable();
+        ids.dedup();
+        assert_eq!(ids.len(), all, "an id stands twice");
+        assert!(all > 2047);
+        for node in layers(&xml)[0].descendants() {
+            assert!(node.children().filter(Node::is_element).count() <= 200);
+        }
+        let merged = repeated(svg(tree), &["--depth", "11"]);
+        assert!(merged.len() < text.len() / 2, "{} and {}", merged.len(), text.len());
+    }
+
+    /// A clone inside a selected drawing makes it a form for one generator and stays a part of the
+    /// shape for the others.
+    #[test]
+    fn that_are_selected_are_shapes_as_well() {
+        let pair = svg("<g id='pair'><circle id='a' cx='60' cy='100' r='40'/><use href='#a' x='80'/></g>");
+        let packed = packed_text(pair.as_str(), &["--id", "pair", "--spacing", "12"]);
+        let right = elements(layers(&parse(&packed))[0]).iter().any(|node| {
+            let d = node.descendants().find_map(|node| node.attribute("d")).unwrap_or("");
+            d.trim_start_matches('M')
+                .split(',')
+                .next()
+                .and_then(|x| x.parse::<f64>().ok())
+                .is_some_and(|x| x > 120.0)
+        });
+        assert!(right, "the clone is filled too");
+        let form = repeated(pair.as_str(), &["--id", "pair", "--depth", "2"]);
+        let xml = parse(&form);
+        let data: String = layers(&xml)[0].descendants().filter_map(|node| node.attribute("d")).collect();
+        assert_eq!(data.matches('M').count(), 2, "{data}");
+    }
+
+    #[test]
+    fn end_when_the_time_does() {
+        let tree = "<g class='rinceau-form'><rect id='a' width='20' height='50'/><use href='#a' transform='translate(90 9) scale(.9)'/><use href='#a' transform='translate(9 90) scale(.9)'/></g>";
+        let folder = folder();
+        let path = folder.path().join("report.json");
+        let flags = ["--depth", "23", "--most", "20000000", "--time-limit", "0.001"];
+        let done = rinceau(["recurse", "--report"]).arg(&path).args(&flags).input(svg(tree)).succeed();
+        let report: serde_json::Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+        assert_eq!(report["complete"], false, "{report}");
+        assert!(report["counts"]["elements"].as_f64().unwrap() < 4e6, "{report}");
+        assert_only_a_layer_was_added(&svg(tree), done.text(), "out of time");
+    }
+}
+
 /// The same bytes for any number of threads.
 #[test]
 fn threads_do_not_show() {
-    for (generator, sample) in [("pack", &samples()[0]), ("vine", &geometry::samples_of("vine")[0])] {
+    let first = |name: &str| geometry::samples_of(name)[0].clone();
+    for (generator, sample) in ["pack", "vine", "recurse"].map(|name| (name, first(name))) {
         let drawn_with = |threads: &str| {
             let mut command = Command::new(binary());
-            command.arg(generator).arg(sample).env("RAYON_NUM_THREADS", threads);
+            command.arg(generator).arg(&sample).env("RAYON_NUM_THREADS", threads);
             Run::of(command).succeed().stdout
         };
         let one = drawn_with("1");

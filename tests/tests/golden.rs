@@ -82,3 +82,41 @@ fn every_vine() {
     }
     insta::assert_snapshot!(table);
 }
+
+#[test]
+fn a_small_form_in_full() {
+    let svg = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 120 60">
+  <g id="tree" class="rinceau-form"><path id="trunk" d="M60,58V38" style="fill:none;stroke:#24452f;stroke-width:4"/>
+    <use href="#trunk" transform="translate(60 38) rotate(-40) scale(.7) translate(-60 -58)"/>
+    <use href="#trunk" transform="translate(60 38) rotate(40) scale(.7) translate(-60 -58)"/>
+    <circle id="bud" cx="60" cy="38" r="3" fill="#d2913a"/></g>
+</svg>
+"##;
+    for output in ["paths", "clones"] {
+        let (document, _) = drawn("recurse", svg.as_bytes().to_vec(), &[("depth", "3"), ("output", output)]);
+        insta::assert_snapshot!(format!("a_small_form_as_{output}"), document.text());
+    }
+}
+
+#[test]
+fn every_form() {
+    let mut table = String::new();
+    for path in samples_of("recurse") {
+        let (document, artwork) = drawn("recurse", std::fs::read(&path).unwrap(), &[]);
+        let count = |name: &str| artwork.counts[name];
+        table += &format!(
+            "{:22} {:6} shapes in {:6} copies, {:016x}\n",
+            path.file_stem().unwrap().to_string_lossy(),
+            count("elements"),
+            count("copies"),
+            fingerprint(&document.to_bytes()),
+        );
+        assert!(
+            artwork.complete && artwork.warnings.is_empty(),
+            "{}: {:?}",
+            path.display(),
+            artwork.warnings
+        );
+    }
+    insta::assert_snapshot!(table);
+}
