@@ -38,7 +38,7 @@ fn tack(text: &str, operation: &str, ids: &[&str]) -> String {
 }
 
 /// The text with the value of one `transform` cut out.
-fn without_transform<'a>(text: &'a str, id: &str) -> (String, String) {
+fn without_transform(text: &str, id: &str) -> (String, String) {
     let xml = parse(text);
     let node: Node = by_id(&xml, id);
     let attribute = node.attributes().find(|a| a.name() == "transform").expect("a transform");

@@ -199,38 +199,65 @@ fn write_steps<const POWER: u32>(out: &mut Vec<u8>, steps: i64) {
         return;
     };
     let (mut whole, fraction) = (size / POWER, size % POWER);
-    let mut text = [0_u8; 16];
-    const POINT: usize = 11;
-    let mut from = POINT;
+    // From its end to its start, in a register: a copy of bytes that were just stored one by one
+    // has to wait for them.
+    let mut text = Text::default();
+    if fraction > 0 {
+        // As four digits, whatever the power.
+        let digits = fraction * (10_000 / POWER);
+        let (high, low) = (digits / 100, digits % 100);
+        match (low, low % 10, high % 10) {
+            (0, _, 0) => text.digit(high / 10),
+            (0, _, _) => text.pair(high),
+            (_, 0, _) => {
+                text.digit(low / 10);
+                text.pair(high);
+            }
+            _ => {
+                text.pair(low);
+                text.pair(high);
+            }
+        }
+        text.byte(b'.');
+    }
     while whole >= 100 {
-        from -= 2;
-        text[from..from + 2].copy_from_slice(&PAIRS[(whole % 100) as usize]);
+        text.pair(whole % 100);
         whole /= 100;
     }
     if whole >= 10 {
-        from -= 2;
-        text[from..from + 2].copy_from_slice(&PAIRS[whole as usize]);
+        text.pair(whole);
     } else if whole > 0 || fraction == 0 {
-        from -= 1;
-        text[from] = b'0' + whole as u8;
-    }
-    let mut to = POINT;
-    if fraction > 0 {
-        text[POINT] = b'.';
-        // As four digits, whatever the power.
-        let digits = fraction * (10_000 / POWER);
-        text[POINT + 1..POINT + 3].copy_from_slice(&PAIRS[(digits / 100) as usize]);
-        text[POINT + 3..POINT + 5].copy_from_slice(&PAIRS[(digits % 100) as usize]);
-        to = POINT + 5;
-        while text[to - 1] == b'0' {
-            to -= 1;
-        }
+        text.digit(whole);
     }
     if steps < 0 {
-        from -= 1;
-        text[from] = b'-';
+        text.byte(b'-');
     }
-    out.extend_from_slice(&text[from..to]);
+    let end = out.len() + text.len;
+    out.extend_from_slice(&text.bytes.to_le_bytes());
+    out.truncate(end);
+}
+
+/// Up to sixteen bytes; each goes before the others.
+#[derive(Default)]
+struct Text {
+    bytes: u128,
+    len: usize,
+}
+
+impl Text {
+    fn byte(&mut self, byte: u8) {
+        self.bytes = self.bytes << 8 | u128::from(byte);
+        self.len += 1;
+    }
+
+    fn digit(&mut self, digit: u32) {
+        self.byte(b'0' + digit as u8);
+    }
+
+    fn pair(&mut self, number: u32) {
+        self.bytes = self.bytes << 16 | u128::from(u16::from_le_bytes(PAIRS[number as usize]));
+        self.len += 2;
+    }
 }
 
 #[cfg(test)]

@@ -368,13 +368,13 @@ impl Run<'_> {
     fn joined(&self, expansion: &Expansion, join: Join) -> Vec<Item> {
         let mut looks = Looks::default();
         let near = 1e-4 * expansion.lists.lists[self.root].size * expansion.place.determinant().abs().sqrt();
-        // Lines of different colours stay apart.
+        // Lines of different looks stay apart.
         let mut lines: BTreeMap<usize, (Joiner, Style, usize)> = BTreeMap::new();
         expansion.walk(|step| {
             if let Step::Draw(drawn) = step {
                 let look = expansion.look(&drawn, &mut looks);
                 let path = look.transform * expansion.lists.primitives[drawn.primitive].path.clone();
-                let apart = expansion.ramp.is_some() && join == Join::Touching;
+                let apart = join == Join::Touching;
                 let line = lines.entry(if apart { look.style } else { 0 }).or_insert_with(|| {
                     (Joiner::new(join, near), expansion.own_style(&drawn, &look), drawn.primitive)
                 });

@@ -1,6 +1,5 @@
 """The forms of Figures 1, 3, 4 and 6 of Carlson and Woodbury 1990, and three pieces of our own."""
 
-import cmath
 import math
 
 from common import Affine, clone, form, mirror, move, number, points, polygon, scale, shape, similar, turn, write
@@ -31,6 +30,35 @@ def at(place, turned, by, mirrored=False):
     return move(*place) @ turn(turned) @ scale(-by if mirrored else by, by)
 
 
+def polar(radius, angle):
+    return radius * math.cos(angle), radius * math.sin(angle)
+
+
+def between(p, q, t):
+    return tuple(m + t * (n - m) for m, n in zip(p, q))
+
+
+def pairs(*where):
+    """Points as path data."""
+    return tuple(f"{number(x)} {number(y)}" for x, y in where)
+
+
+def onto(corners, to):
+    """The affine map that takes three corners to three others."""
+    (ax, ay), (bx, by), (cx, cy) = corners
+    inverse_of = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+    (px, py), (qx, qy), (rx, ry) = to
+
+    def row(p, q, r):
+        x = ((q - p) * (cy - ay) - (r - p) * (by - ay)) / inverse_of
+        y = ((r - p) * (bx - ax) - (q - p) * (cx - ax)) / inverse_of
+        return x, y, p - x * ax - y * ay
+
+    a, c, e = row(px, qx, rx)
+    b, d, f = row(py, qy, ry)
+    return Affine(a, b, c, d, e, f)
+
+
 def bend(p, q, r, t):
     """A point of the quadratic curve from p to r with handle q."""
     u = 1 - t
@@ -49,10 +77,6 @@ def aside(point, turned, by):
     return point[0] + by * math.cos(a), point[1] + by * math.sin(a)
 
 
-def pairs(*where):
-    return tuple(f"{number(x)} {number(y)}" for x, y in where)
-
-
 def taper(p, q, r, wide, narrow):
     """The outline of a limb about a quadratic curve: cut flat at its foot, round at its tip."""
     first, last = heading(p, q, r, 0), heading(p, q, r, 1)
@@ -62,6 +86,81 @@ def taper(p, q, r, wide, narrow):
         aside(r, last, -narrow / 2), aside(q, middle, -(wide + narrow) / 4), aside(p, first, -wide / 2))
     n = number(narrow / 2)
     return f"M{a} Q{b} {c} A{n} {n} 0 0 0 {d} Q{e} {f} Z"
+
+
+def lance(foot, tip, wide, droop):
+    """A slender leaf from its foot to its tip, bent to the right by a share of its length."""
+    (x, y), (u, v) = foot, tip
+    across = y - v, u - x
+
+    def beside(t, by):
+        p, q = between(foot, tip, t)
+        return p + by * across[0], q + by * across[1]
+
+    a, b, c, d, e, f = pairs(foot, beside(0.25, wide - droop), beside(0.6, wide - droop), tip,
+                             beside(0.55, -wide - droop), beside(0.2, -wide * 0.8))
+    return f"M{a} C{b} {c} {d} C{e} {f} {a} Z"
+
+
+def oval(x, y, a, b, turned=0):
+    """An ellipse."""
+    p, q = ((x + s * a * math.cos(math.radians(turned)), y + s * a * math.sin(math.radians(turned))) for s in (-1, 1))
+    radii = f"A{number(a)} {number(b)} {number(turned)} 0 0"
+    return f"M{pairs(p)[0]} {radii} {pairs(q)[0]} {radii} {pairs(p)[0]} Z"
+
+
+def rounded(where, share):
+    """An open path whose corners are cut round, from a share of each side on."""
+    text = "M" + pairs(where[0])[0]
+    for before, corner, after in zip(where, where[1:], where[2:]):
+        text += " L{} Q{} {}".format(*pairs(between(corner, before, share), corner, between(corner, after, share)))
+    return text + " L" + pairs(where[-1])[0]
+
+
+def smooth(where, closed=False):
+    """Path data of a smooth curve through points; it goes on from where it starts with."""
+    count = len(where)
+
+    def handle(i, side):
+        before, here, after = (where[j % count if closed else min(max(j, 0), count - 1)] for j in (i - 1, i, i + 1))
+        return tuple(h + side * (a - b) / 6 for b, h, a in zip(before, here, after))
+
+    text = "M" + pairs(where[0])[0]
+    for i in range(count if closed else count - 1):
+        to = (i + 1) % count
+        text += " C" + " ".join(pairs(handle(i, 1), handle(to, -1), where[to]))
+    return text + (" Z" if closed else "")
+
+
+def squig(path, ways):
+    """The clones of a path that takes the place of each of its own lines: laid from the line's one
+    end to the other, or back, or mirrored, or both."""
+    whole = path[0], path[-1]
+    ends = {"on": (1, False), "back": (-1, False), "mirrored": (1, True), "back mirrored": (-1, True)}
+    clones = []
+    for segment, way in zip(zip(path, path[1:]), ways):
+        order, mirrored = ends[way]
+        clones.append(clone(similar(*whole, *segment[::order], mirrored=mirrored)))
+    return clones
+
+
+class View:
+    """Parallel projection of space, z upwards, seen from a compass direction and a height."""
+
+    def __init__(self, compass, height):
+        a, e = math.radians(compass), math.radians(height)
+        self.right = (-math.sin(a), math.cos(a), 0)
+        self.down = (math.sin(e) * math.cos(a), math.sin(e) * math.sin(a), -math.cos(e))
+
+    def __call__(self, *p):
+        return tuple(sum(m * n for m, n in zip(axis, p)) for axis in (self.right, self.down))
+
+    def face(self, *corners):
+        return polygon(*(self(*corner) for corner in corners))
+
+    def copy(self, by, *to):
+        """A copy of a solid, scaled about the origin and carried there."""
+        return move(*self(*to)) @ scale(by)
 
 
 def figure_1():
@@ -83,25 +182,6 @@ def figure_1():
               clone(at(r, heading(p, q, r, 0) + heading(p, q, r, 1), leader, mirrored=True)),
           ], depth=5, colours=ramp(MEADOW)),
           fit=(-0.75, -1.75, 1.5, 1.85))
-
-
-class View:
-    """Parallel projection of space, z upwards, seen from a compass direction and a height."""
-
-    def __init__(self, compass, height):
-        a, e = math.radians(compass), math.radians(height)
-        self.right = (-math.sin(a), math.cos(a), 0)
-        self.down = (math.sin(e) * math.cos(a), math.sin(e) * math.sin(a), -math.cos(e))
-
-    def __call__(self, *p):
-        return tuple(sum(m * n for m, n in zip(axis, p)) for axis in (self.right, self.down))
-
-    def face(self, *corners):
-        return polygon(*(self(*corner) for corner in corners))
-
-    def copy(self, by, *to):
-        """A copy of a solid, scaled about the origin and carried there."""
-        return move(*self(*to)) @ scale(by)
 
 
 def figure_3():
@@ -134,18 +214,6 @@ def figure_3():
           fit=(-1.4, -1.5, 2.8, 3))
 
 
-def squig(path, ways):
-    """The clones of a path whose every segment is replaced by the path: each laid from the one end
-    of its segment to the other, or back, or mirrored, or both."""
-    whole = path[0], path[-1]
-    ends = {"on": (1, False), "back": (-1, False), "mirrored": (1, True), "back mirrored": (-1, True)}
-    clones = []
-    for segment, way in zip(zip(path, path[1:]), ways):
-        order, mirrored = ends[way]
-        clones.append(clone(similar(*whole, *segment[::order], mirrored=mirrored)))
-    return clones
-
-
 def figure_6():
     # So far round that the larger square stands upright.
     path = [turn(math.degrees(math.atan(3)))(p) for p in [(0, 0), (2, 0), (3, 1), (2, 2)]]
@@ -157,33 +225,6 @@ def figure_6():
               *squig(path, ["back", "on", "on"]),
           ], depth=9, generations="last", strokes="fixed", join="touching", min_size=2),
           fit=(-2.4, -0.9, 3.8, 3.8))
-
-
-def smooth(where, closed=False):
-    """Path data of a smooth curve through points; it goes on from where it starts with."""
-    count = len(where)
-
-    def handle(i, side):
-        before, here, after = (where[j % count if closed else min(max(j, 0), count - 1)] for j in (i - 1, i, i + 1))
-        return tuple(h + side * (a - b) / 6 for b, h, a in zip(before, here, after))
-
-    text = "M" + pairs(where[0])[0]
-    for i in range(count if closed else count - 1):
-        to = (i + 1) % count
-        text += " C" + " ".join(pairs(handle(i, 1), handle(to, -1), where[to]))
-    return text + (" Z" if closed else "")
-
-
-def rounded(where, share):
-    """An open path whose corners are cut round, from a share of each side on."""
-    text = "M" + pairs(where[0])[0]
-    for before, corner, after in zip(where, where[1:], where[2:]):
-        text += " L{} Q{} {}".format(*pairs(between(corner, before, share), corner, between(corner, after, share)))
-    return text + " L" + pairs(where[-1])[0]
-
-
-def polar(radius, angle):
-    return radius * math.cos(angle), radius * math.sin(angle)
 
 
 def ammonite():
@@ -271,7 +312,7 @@ def arches():
     over = [(out, -out, top), (out, out, top), (-out, out, top),
             (-out, out, high), (-out, -out, high), (out, -out, high)]
     size = 0.45
-    aside = half - size * out
+    corner = half - size * out
     # The first shape stands for the whole in the picture of the clones; it is painted over.
     write("fig4-b-arches", "Arches",
           "A block with an arch in each side carries four clones of itself. "
@@ -285,29 +326,9 @@ def arches():
               front("y", half, half, top, right), band("y", half, left),
               fill(view.face(*over), light),
               fill(polygon(*put("x", out, box)), "#cf7f86"), fill(polygon(*put("y", out, box)), left),
-              *(clone(view.copy(size, x * aside, y * aside, high)) for x, y in ((-1, -1), (-1, 1), (1, -1), (1, 1))),
+              *(clone(view.copy(size, x * corner, y * corner, high)) for x, y in ((-1, -1), (-1, 1), (1, -1), (1, 1))),
           ], depth=5),
           fit=(-0.8, -1.8, 1.6, 2.2))
-
-
-def between(p, q, t):
-    return tuple(m + t * (n - m) for m, n in zip(p, q))
-
-
-def onto(corners, to):
-    """The affine map that takes three corners to three others."""
-    (ax, ay), (bx, by), (cx, cy) = corners
-    inverse_of = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
-    (px, py), (qx, qy), (rx, ry) = to
-
-    def row(p, q, r):
-        x = ((q - p) * (cy - ay) - (r - p) * (by - ay)) / inverse_of
-        y = ((r - p) * (bx - ax) - (q - p) * (cx - ax)) / inverse_of
-        return x, y, p - x * ax - y * ay
-
-    a, c, e = row(px, qx, rx)
-    b, d, f = row(py, qy, ry)
-    return Affine(a, b, c, d, e, f)
 
 
 def mesh():
@@ -331,7 +352,6 @@ def meander():
     # As high as the path can be before its copies run into each other.
     path = [turn(-24)(p) for p in [(0, 0), (0.25, -0.544), (0.75, -0.544), (1, 0)]]
     ways = ["back", "back mirrored", "back mirrored"]
-
     clones = squig(path, ways)
     course = [path[0]]
 
@@ -352,13 +372,6 @@ def meander():
           form("meander", [line(rounded(course, 0.5), LAGOON[1], 0.016), *clones],
                depth=14, generations="last", strokes="fixed", min_size=56, join="touching"),
           fit=(-0.4, -1, 1.5, 1.5))
-
-
-def oval(x, y, a, b, turned=0):
-    """An ellipse."""
-    p, q = ((x + s * a * math.cos(math.radians(turned)), y + s * a * math.sin(math.radians(turned))) for s in (-1, 1))
-    radii = f"A{number(a)} {number(b)} {number(turned)} 0 0"
-    return f"M{pairs(p)[0]} {radii} {pairs(q)[0]} {radii} {pairs(p)[0]} Z"
 
 
 def kawaguchiesque():
@@ -427,18 +440,6 @@ def evergreen():
           fit=(-0.5, -1.05, 1, 1.1))
 
 
-def lance(foot, tip, wide, droop):
-    """A slender leaf from its foot to its tip, bent to the right by a share of its length."""
-    (x, y), (u, v) = foot, tip
-    across = y - v, u - x
-    def beside(t, by):
-        p, q = between(foot, tip, t)
-        return p + by * across[0], q + by * across[1]
-    a, b, c, d, e, f = pairs(foot, beside(0.25, wide - droop), beside(0.6, wide - droop), tip,
-                             beside(0.55, -wide - droop), beside(0.2, -wide * 0.8))
-    return f"M{a} C{b} {c} {d} C{e} {f} {a} Z"
-
-
 def bamboo():
     nodes = [0.06, -0.35, -0.82, -1.32, -1.84, -2.34, -2.76]
     culm = []
@@ -482,6 +483,7 @@ def phyllotaxis():
             a = math.tau * k / count
             u, v = (size * math.copysign(abs(w) ** 0.8, w) / 2 + offset for w in (math.cos(a), math.sin(a)))
             return polar(math.exp(step * (13 * u + 21 * v)), short * u + long * v)
+
         return smooth([edge(k) for k in range(count)], closed=True)
 
     write("fig4-j-phyllotaxis", "Phyllotaxis",
@@ -566,7 +568,7 @@ def woven_texture():
     light = fill(" ".join(strand(y - 0.03, 0.7, 0.11, 0) for y in rows), EMBER[2])
     # The light comes first as well, for the picture of the clones; there it is painted over.
     write("fig4-n-woven-texture", "Woven texture",
-          "Three strands in a square, and four clones, two of them turned. The order of turned and unturned squares "
+          "Three strands in a square, and four clones, two of them laid across. The order of the two ways "
           "never repeats itself. After Figure 4n of Carlson and Woodbury 1990.",
           form("woven", [
               light,
@@ -591,17 +593,117 @@ def koch_tiling():
             ring = finer
         return ring
 
-    third = math.sqrt(3)
+    # Colours of generations replace the fill and the line, which only the picture of the motif shows.
     write("fig4-o-koch-tiling", "Koch tiling",
           "A snowflake is filled without a gap by one of itself in its middle and six in its points. "
           "After Figure 4o of Carlson and Woodbury 1990.",
           form("snowflake", [
-              fill(polygon(*snowflake(0.965, 3)), DUSK[0], generations="last"),
-              clone(turn(30) @ scale(1 / third)),
+              shape(polygon(*snowflake(0.955, 3)), fill="#efcfc0", stroke=DUSK[0], stroke_width=0.01,
+                    stroke_linejoin="round", generations="last"),
+              clone(turn(30) @ scale(1 / math.sqrt(3))),
               *(clone(move(*polar(2 / 3, math.radians(90 + 60 * k))) @ scale(1 / 3)) for k in range(6)),
           ], depth=7, colours=ramp((DUSK[0],) * 4 + (DUSK[1], DUSK[2], "#efcfc0")), min_size=36),
           fit=(-1.02, -1.02, 2.04, 2.04))
 
 
+def pyramid():
+    view = View(45, 22)
+    high = 2
+    top, left, front, right = (0, 0, high), (1, -1, 0), (1, 1, 0), (-1, 1, 0)
+    middle = view(0, 0, high / 3)
+    write("fig4-p-pyramid", "Pyramid",
+          "A pyramid of five pyramids of half its size, painted from the back to the front. "
+          "After Figure 4p of Carlson and Woodbury 1990.",
+          form("pyramid", [
+              fill(view.face(top, left, front), "#ecc98c", generations="last"),
+              fill(view.face(top, front, right), EMBER[0], generations="last"),
+              fill(polygon(*(scale(0.985, about=middle)(view(*corner)) for corner in (top, left, front, right))),
+                   EMBER[1], generations="inner"),
+              *(clone(view.copy(0.5, x / 2, y / 2, 0)) for x, y in ((-1, -1), (-1, 1), (1, -1), (1, 1))),
+              clone(view.copy(0.5, 0, 0, high / 2)),
+          ], depth=5),
+          fit=(-1.4, -1.75, 2.8, 2.3))
+
+
+def lace():
+    # Six circles about one in a ring, and the circles that touch three of these in the gaps.
+    gap = 1 / (5 + 2 * math.sqrt(3))
+
+    def petal(turned, near, far, wide):
+        way = math.radians(turned)
+        return lance(polar(near, way), polar(far, way), wide, 0)
+
+    thread = "#f4ead8"
+    flower = " ".join(petal(30 + 60 * k, 0.1, 0.86, 0.3) for k in range(6))
+    write("lace", "Lace",
+          "A ring with seven clones that touch it and each other, and six small ones in the gaps.",
+          form("lace", [
+              shape(oval(0, 0, 1, 1), fill="none", stroke=thread, stroke_width=0.017),
+              fill(flower, thread, generations="last"),
+              *(clone(move(*polar(2 / 3, math.radians(60 * k))) @ scale(1 / 3)) for k in range(6)),
+              clone(turn(30) @ scale(1 / 3)),
+              *(clone(move(*polar(1 - gap, math.radians(30 + 60 * k))) @ turn(60 * k) @ scale(gap)) for k in range(6)),
+          ], depth=6, strokes="fixed", min_size=64),
+          fit=(-1.1, -1.1, 2.2, 2.2), background=DUSK[0])
+
+
+def fern():
+    wide, leader, long = 0.026, 0.87, 0.17
+    leaflet = lance((0, 0.01), (0.04, -0.5), 0.2, 0.05)
+    write("fern", "Fern",
+          "A piece of stalk with one clone that carries it on and two fronds, each a fern of its own.",
+          form("fern", [
+              fill(leaflet, MEADOW[1], generations="last"),
+              clone(at((0, -0.35 * long), -60, 0.37)),
+              clone(at((0, -0.8 * long), 56, 0.35, mirrored=True)),
+              fill(taper((0, 0), (0, -long / 2), (0, -long), wide, wide * leader), MEADOW[0]),
+              clone(at((0, -long), 3.2, leader)),
+          ], depth=60, min_size=6),
+          fit=(-0.38, -0.72, 0.76, 0.76))
+
+
+def rosette():
+    count, shrink = 16, 0.8
+
+    def ring(near, far, wide, droop):
+        def turned(k):
+            way = math.tau * k / count
+            return polar(near, way), polar(far, way + 0.06)
+
+        return " ".join(lance(*turned(k), wide, droop) for k in range(count))
+
+    write("rosette", "Rosette",
+          "A ring of petals, and one clone of it, smaller and turned by half a petal.",
+          form("rosette", [
+              fill(ring(0.5, 1, 0.46, 0.1), DUSK[0]),
+              fill(oval(0, 0, 0.8, 0.8), DUSK[0]),
+              fill(ring(0.56, 0.95, 0.36, 0.1), DUSK[1]),
+              fill(ring(0.66, 0.88, 0.22, 0.1), DUSK[2]),
+              clone(turn(180 / count) @ scale(shrink)),
+          ], depth=24),
+          fit=(-1.05, -1.05, 2.1, 2.1))
+
+
 def draw():
     figure_1()
+    figure_3()
+    figure_6()
+    ammonite()
+    arches()
+    mesh()
+    meander()
+    kawaguchiesque()
+    monkey_tree()
+    p4_symmetry()
+    evergreen()
+    bamboo()
+    phyllotaxis()
+    bronchus()
+    tree()
+    half_square()
+    woven_texture()
+    koch_tiling()
+    pyramid()
+    lace()
+    fern()
+    rosette()
