@@ -13,6 +13,8 @@ pub struct Recipe {
     pub seed: u64,
     /// Ids of the containers (or other main inputs), in drawing order.
     pub sources: Vec<String>,
+    /// Other objects that were named for the run, such as lines that guide the flow.
+    pub with: Vec<String>,
     /// Label of the layer, where a new one is made.
     pub label: String,
 }
@@ -20,11 +22,15 @@ pub struct Recipe {
 impl Recipe {
     /// `rinceau:source`: ids separated by spaces, white space inside an id as `%20` and so on.
     pub fn source_attribute(&self) -> String {
-        let escaped: Vec<String> = self.sources.iter().map(|id| escaped(id)).collect();
-        escaped.join(" ")
+        list(&self.sources)
     }
 
-    /// Reads `rinceau:source`.
+    /// `rinceau:with`: the same for the other objects.
+    pub fn with_attribute(&self) -> String {
+        list(&self.with)
+    }
+
+    /// Reads such a list.
     pub(crate) fn parse_sources(text: &str) -> Vec<String> {
         let unescaped = |id: &str| {
             let spaces =
@@ -38,6 +44,10 @@ impl Recipe {
 /// What separates ids in a list, and how it is written inside one.
 const SPACES: [(char, &str); 5] =
     [(' ', "%20"), ('\t', "%09"), ('\n', "%0A"), ('\r', "%0D"), ('\u{c}', "%0C")];
+
+fn list(ids: &[String]) -> String {
+    ids.iter().map(|id| escaped(id)).collect::<Vec<_>>().join(" ")
+}
 
 fn escaped(id: &str) -> String {
     SPACES.iter().fold(id.replace('%', "%25"), |id, &(c, escape)| id.replace(c, escape))
@@ -56,6 +66,7 @@ mod tests {
             params: Map::new(),
             seed: 0,
             sources: sources.clone(),
+            with: Vec::new(),
             label: String::new(),
         };
         assert_eq!(Recipe::parse_sources(&recipe.source_attribute()), sources);

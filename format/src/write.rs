@@ -116,6 +116,9 @@ pub(crate) fn recipe_attributes(out: &mut String, recipe: &Recipe, prefix: &str)
     attribute(out, &format!("{prefix}:params"), &params);
     attribute(out, &format!("{prefix}:seed"), &recipe.seed.to_string());
     attribute(out, &format!("{prefix}:source"), &recipe.source_attribute());
+    if !recipe.with.is_empty() {
+        attribute(out, &format!("{prefix}:with"), &recipe.with_attribute());
+    }
 }
 
 /// Everything between the layer's tags.

@@ -63,6 +63,7 @@ fn written(depth: usize, output: &str) -> u64 {
         params: values.recipe(recurse().table),
         seed: 1,
         sources: vec!["tree".into()],
+        with: Vec::new(),
         label: "Ornament".into(),
     };
     let mut out = Counted(0);

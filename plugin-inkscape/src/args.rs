@@ -38,13 +38,7 @@ pub fn command() -> Command {
                     .value_parser(clap::value_parser!(std::path::PathBuf))
                     .help("Write counts, warnings and timings as JSON"),
             )
-            .arg(
-                Arg::new("time-limit")
-                    .long("time-limit")
-                    .value_name("SECONDS")
-                    .value_parser(seconds)
-                    .help("Stop after this long and write the best so far"),
-            );
+            .arg(time_limit("Stop after this long and write the best so far"));
         for spec in generator.table {
             sub = sub.arg(parameter(spec));
         }
@@ -66,6 +60,13 @@ pub fn command() -> Command {
                 .arg(input())
                 .arg(output())
                 .arg(ids(true)),
+        )
+        .subcommand(
+            Command::new("update")
+                .about("Make every ornament again from its recipe, after its shapes were changed")
+                .arg(input())
+                .arg(output())
+                .arg(time_limit("Stop each after this long and use the best so far")),
         )
         .subcommand(
             Command::new("resume")
@@ -106,6 +107,10 @@ fn ids(required: bool) -> Arg {
         .action(ArgAction::Append)
         .required(required)
         .help("An object by its id; may be given several times")
+}
+
+fn time_limit(help: &'static str) -> Arg {
+    Arg::new("time-limit").long("time-limit").value_name("SECONDS").value_parser(seconds).help(help)
 }
 
 fn role() -> Arg {

@@ -3,7 +3,7 @@
 //! leaves the drawing as it is, so a failure writes the input back and one sentence.
 
 use crate::run::{self, Job};
-use crate::{check, output, progress};
+use crate::{check, output, progress, update};
 use rinceau::params::Kind;
 use rinceau::{Error, GENERATORS, Values};
 use rinceau_format::{Document, Role, Selection};
@@ -87,6 +87,14 @@ impl Call {
         }
         if let Some(operation) = self.tool.strip_prefix("tack-") {
             return Ok(run::tacked(&Document::from_bytes(input)?, operation, &self.ids)?.to_bytes());
+        }
+        if self.tool == "update" {
+            let limit = Some(Duration::from_secs_f64(LONGEST_RUN));
+            let document = Document::from_bytes(input)?;
+            let updated = update::update(document, limit, &mut progress::Terminal::new())?;
+            // What stays as it is has to be said, and the dialog is the place for it.
+            updated.notes.iter().for_each(|note| eprintln!("Note: {note}"));
+            return Ok(updated.document.to_bytes());
         }
         if self.tool == "resume" {
             let Some(id) = self.ids.first() else {

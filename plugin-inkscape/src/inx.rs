@@ -54,6 +54,16 @@ pub fn all(binary: &str) -> Vec<(String, String)> {
         ));
     }
     files.push((
+        "update.inx".to_owned(),
+        command(
+            "update",
+            "Update all",
+            "Makes every ornament of the drawing again, after the shapes that it fills were changed",
+            &[MENU],
+            binary,
+        ),
+    ));
+    files.push((
         "resume.inx".to_owned(),
         command(
             "resume",

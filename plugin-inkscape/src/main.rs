@@ -10,6 +10,7 @@ mod progress;
 #[cfg(test)]
 mod reference;
 mod run;
+mod update;
 
 use std::process::ExitCode;
 

@@ -1,6 +1,6 @@
 //! The whole flow on one screen: text, document, scene, generate, artwork, layer, text.
 
-use crate::{check, install, output, progress};
+use crate::{check, install, output, progress, update};
 use clap::ArgMatches;
 use rinceau::tack::Tacked;
 use rinceau::{Error, GENERATORS, Generator, Values};
@@ -53,17 +53,21 @@ impl Done {
 pub fn generate(job: Job) -> Result<Done, Error> {
     job.progress.begin("read");
     let document = Document::from_bytes(job.bytes)?;
-    let scene = document.scene(&Selection { ids: job.ids })?;
+    let selection = Selection { ids: job.ids };
+    let scene = document.scene(&selection)?;
     job.progress.limit(job.time_limit);
     let artwork =
         rinceau::generate(job.generator, &job.values, &scene, job.seed, job.progress.as_progress())?;
     let sources = job.generator.sources(&scene);
+    let is_source = |id: &&String| sources.iter().any(|source| source.id == **id);
+    let with = selection.ids.iter().filter(|id| !is_source(id)).cloned().collect();
     let labels: Vec<&str> = sources.iter().map(|source| source.label.as_str()).collect();
     let recipe = Recipe {
         generator: job.generator.name.to_owned(),
         params: job.values.recipe(job.generator.table),
         seed: job.seed,
         sources: sources.iter().map(|source| source.id.clone()).collect(),
+        with,
         label: format!("Ornament - {}", labels.join(", ")),
     };
     let mut document = document;
@@ -96,6 +100,15 @@ pub fn command(matches: &ArgMatches) -> Result<(), Error> {
             let operation = matches.get_one::<String>("operation").map_or("drag", String::as_str);
             let document = Document::from_bytes(output::read(input(matches))?)?;
             output::write(path(matches, "out"), &tacked(&document, operation, &ids(matches))?.to_bytes())
+        }
+        "update" => {
+            let document = Document::from_bytes(output::read(input(matches))?)?;
+            let mut progress = progress::Terminal::new();
+            let limit = matches.get_one::<f64>("time-limit").map(|&s| Duration::from_secs_f64(s.min(1e9)));
+            let updated = update::update(document, limit, &mut progress)?;
+            output::write(path(matches, "out"), &updated.document.to_bytes())?;
+            updated.notes.iter().for_each(|note| eprintln!("rinceau: note: {note}"));
+            Ok(())
         }
         "resume" => {
             let mut document = Document::from_bytes(output::read(input(matches))?)?;

@@ -198,11 +198,16 @@ impl Document {
         edits: &mut Vec<(Range<usize>, String)>,
     ) -> Result<String, Error> {
         let params = serde_json::Value::Object(recipe.params.clone()).to_string();
-        let fresh =
-            [("params", params), ("seed", recipe.seed.to_string()), ("source", recipe.source_attribute())];
+        let fresh = [
+            ("params", params),
+            ("seed", recipe.seed.to_string()),
+            ("source", recipe.source_attribute()),
+            ("with", recipe.with_attribute()),
+        ];
         let mut missing = String::new();
         for (name, value) in fresh {
             match node.attributes().find(|a| a.namespace() == Some(NAMESPACE) && a.name() == name) {
+                None if name == "with" && value.is_empty() => {}
                 Some(a) => edits.push((a.range_value(), quoted_for(&self.text, a.range_value(), &value))),
                 None => {
                     let prefix = node.lookup_prefix(NAMESPACE).unwrap_or("rinceau");
@@ -331,6 +336,7 @@ fn read_recipe(document: &Document, node: Node) -> Result<Recipe, Error> {
         params,
         seed,
         sources: Recipe::parse_sources(get("source").unwrap_or("")),
+        with: Recipe::parse_sources(get("with").unwrap_or("")),
         label: label_of(node),
     })
 }

@@ -36,6 +36,7 @@ pub fn recipe(sources: &[&str]) -> Recipe {
         params: serde_json::Map::from_iter([("spacing".into(), serde_json::json!(2.5))]),
         seed: 7,
         sources: sources.iter().map(|&id| id.to_owned()).collect(),
+        with: Vec::new(),
         label: format!("Ornament - {}", sources.join(", ")),
     }
 }

@@ -68,11 +68,11 @@ pub(super) fn draw(
     Ok(())
 }
 
-/// The lists with one clone changed, about the middle of what it draws.
+/// The lists with one clone changed, about its foot, so that it stays attached.
 fn changed(lists: &Lists, root: usize, entry: usize, change: usize, degrees: f64) -> Lists {
     let mut lists = lists.clone();
     if let Entry::Clone(other, by) = lists.lists[root].entries[entry] {
-        let middle = by * middle(&lists, other);
+        let foot = by * foot(&lists, other);
         let angle = degrees.to_radians();
         let factor = 1.0 + degrees / 100.0;
         let change = match change {
@@ -87,20 +87,20 @@ fn changed(lists: &Lists, root: usize, entry: usize, change: usize, degrees: f64
                 Affine::rotate(turn) * Affine::scale_non_uniform(-1.0, 1.0) * Affine::rotate(-turn)
             }
         };
-        let about = Affine::translate(middle.to_vec2()) * change * Affine::translate(-middle.to_vec2());
+        let about = Affine::translate(foot.to_vec2()) * change * Affine::translate(-foot.to_vec2());
         lists.lists[root].entries[entry] = Entry::Clone(other, about * by);
     }
     lists
 }
 
-fn middle(lists: &Lists, list: usize) -> Point {
-    let drawn = lists.lists[list].entries.iter().filter_map(|entry| match *entry {
-        Entry::Draw(primitive) => Some(&lists.primitives[primitive].hull),
+/// Where the first line of a motif starts: the foot of a trunk, and a corner of a polygon.
+fn foot(lists: &Lists, list: usize) -> Point {
+    let first = lists.lists[list].entries.iter().find_map(|entry| match *entry {
+        Entry::Draw(primitive) => Some(&lists.primitives[primitive]),
         Entry::Clone(..) => None,
     });
-    let mut points = drawn.flatten();
-    let Some(&first) = points.next() else { return Point::ORIGIN };
-    points.fold(Rect::from_points(first, first), |rect, &p| rect.union_pt(p)).center()
+    let start = first.and_then(|drawn| Some(drawn.base * drawn.path.elements().first()?.end_point()?));
+    start.unwrap_or_default()
 }
 
 /// Everything that a form draws.

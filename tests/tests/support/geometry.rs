@@ -61,6 +61,7 @@ pub fn written(
         params: values(generator, params).recipe(generator.table),
         seed,
         sources: scene.containers.iter().map(|container| container.source.id.clone()).collect(),
+        with: Vec::new(),
         label: "Ornament".into(),
     };
     document.with_layer(artwork, &recipe).unwrap()
