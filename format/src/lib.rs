@@ -44,8 +44,8 @@ pub use limits::Limits;
 pub use number::{decimals_for, path_data, write_number};
 pub use recipe::Recipe;
 pub use scene::{
-    Container, Element, Fixed, Form, FormItem, Guide, Live, Outline, Primitive, Replication, Scene, Seed,
-    Selection, Source, Stroke, Template, When,
+    Container, Element, Example, Fixed, Form, FormItem, Guide, Live, Outline, Primitive, Reference,
+    Replication, Scene, Seed, Selection, Source, Stroke, Template, When,
 };
 pub use shape::arc_to_cubics;
 pub use style::{FillRule, Style, rgb};

@@ -39,6 +39,8 @@ pub struct Scene {
     pub forms: Vec<Form>,
     /// Fixed points of tack transformations.
     pub tacks: Vec<Seed>,
+    /// Example arrangements, in drawing order.
+    pub references: Vec<Reference>,
     /// Paths that stop growth.
     pub boundaries: Vec<Guide>,
     /// Strokes that paint a growth area.
@@ -220,4 +222,26 @@ pub struct Replication {
     pub form: usize,
     /// From the place where that form is drawn to where it goes, in user units of the root.
     pub transform: Affine,
+}
+
+/// An example arrangement.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// The group.
+    pub source: Source,
+    /// Its objects in drawing order.
+    pub examples: Vec<Example>,
+    /// Pairs of ids: edges of the connectivity to be flipped.
+    pub flips: Vec<(String, String)>,
+}
+
+/// An object of an example arrangement.
+#[derive(Clone, Debug)]
+pub struct Example {
+    /// The object.
+    pub source: Source,
+    /// What it is one of: named, the source of a clone, or the first of the same shape.
+    pub symbol: String,
+    /// Its shapes in drawing order, in user units of the root.
+    pub parts: Vec<Part>,
 }

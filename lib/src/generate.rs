@@ -1,5 +1,6 @@
 //! The generators by name, and the one place that chooses between them.
 
+use crate::arrange;
 use crate::pack;
 use crate::params::{ParamSpec, Values};
 use crate::progress::Progress;
@@ -62,6 +63,16 @@ pub const GENERATORS: &[Generator] = &[
         sources: recurse::sources,
         run: |values, scene, rng, progress| {
             recurse::generate(&recurse::Params::from_values(values), scene, rng, progress)
+        },
+    },
+    Generator {
+        name: "arrange",
+        title: "Continue an example",
+        about: "Fill shapes with elements arranged as in an example: tiles, scales, stones, dots",
+        table: arrange::Params::TABLE,
+        sources: arrange::sources,
+        run: |values, scene, rng, progress| {
+            arrange::generate(&arrange::Params::from_values(values), scene, rng, progress)
         },
     },
 ];

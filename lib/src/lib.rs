@@ -5,10 +5,12 @@
 //!
 //! | generator | from |
 //! |---|---|
+//! | [`arrange`] | Ijiri, Mech, Igarashi, Miller: *An example-based procedural system for element arrangement*, 2008 |
 //! | [`pack`] | Saputra, Kaplan, Asente, Mech: *FLOWPAK: Flow-based ornamental element packing*, 2017 |
 //! | [`recurse`] | Carlson, Woodbury: *Hands-on exploration of recursive forms*, 1990 |
 //! | [`vine`] | Xu, Mould: *Magnetic curves*, 2009, and an article that adds clip art |
 
+pub mod arrange;
 pub mod field;
 pub mod generate;
 pub mod geom;

@@ -34,6 +34,7 @@ pub fn summary(document: &Document, scene: &Scene) -> Result<String, Error> {
     list("element", scene.elements.iter().map(|e| &e.source).collect());
     list("form", scene.forms.iter().map(|f| &f.source).collect());
     list("tack", scene.tacks.iter().map(|t| &t.source).collect());
+    list("reference", scene.references.iter().map(|r| &r.source).collect());
     list("boundary", scene.boundaries.iter().map(|g| &g.source).collect());
     list("spray", scene.sprays.iter().map(|s| &s.source).collect());
     for element in scene.elements.iter().filter(|element| element.template.spine.is_none()) {

@@ -28,6 +28,9 @@ const MARKS: &[(&str, &str)] = &[
     ("seed", "Seed (where a vine starts)"),
     ("form", "Form (a motif with clones of itself)"),
     ("clone", "Clone (a copy in a form, where it goes on)"),
+    ("reference", "Reference (an example that is continued)"),
+    ("boundary", "Boundary (a line that stops growth)"),
+    ("spray", "Spray (a stroke that paints where things grow)"),
     ("tack", "Tack (a point that stays when others are dragged)"),
     ("none", "Clear marks"),
 ];

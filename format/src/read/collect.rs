@@ -5,8 +5,10 @@ use super::resolver::Resolver;
 use super::role::role_of;
 use crate::artwork::Part;
 use crate::error::Error;
+use crate::number::path_data;
 use crate::scene::{
-    Container, Element, Fixed, Guide, Live, Outline, Primitive, Scene, Seed, Source, Stroke, Template, When,
+    Container, Element, Example, Fixed, Guide, Live, Outline, Primitive, Reference, Scene, Seed, Source,
+    Stroke, Template, When,
 };
 use crate::shape::points_of;
 use crate::units::mean_scale;
@@ -40,6 +42,8 @@ pub(super) struct Drawn {
     pub live: Option<Live>,
     /// Drawn by a clone: part of a shape, but no primitive.
     pub of_clone: bool,
+    /// The child of the annotated group that it is in.
+    pub child: Option<NodeId>,
 }
 
 /// Where in the drawing a node stands, as far as roles depend on it.
@@ -81,7 +85,7 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
     pub fn add(&mut self, part: Part, drawn: Drawn) {
         if let Some(collector) = self.open.last_mut() {
             collector.parts.push(part);
-            if collector.is_list() {
+            if collector.wants_children() {
                 collector.drawn.push(drawn);
             }
         }
@@ -90,6 +94,11 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
     /// True if the innermost object is a display list.
     pub fn is_form(&self) -> bool {
         self.open.last().is_some_and(Collector::is_list)
+    }
+
+    /// True if it matters to the innermost object which of its children a part is in.
+    pub fn wants_children(&self) -> bool {
+        self.open.last().is_some_and(Collector::wants_children)
     }
 
     /// True if the innermost object is marked as one.
@@ -236,8 +245,9 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
             }
             Some(Role::Form) => self.form(done),
             Some(Role::Clone) => self.close_clone(done),
+            Some(Role::Reference) => self.reference(done)?,
             // Read by the generators that use them, once they do.
-            Some(Role::Reference | Role::Rules) => {}
+            Some(Role::Rules) => {}
             // A selected group with clones of its own shapes is a form without a mark, for those who
             // look for one, and a shape for others.
             None if !done.clones.is_empty() => {
@@ -287,6 +297,38 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
         }
         items.extend(clones.map(|(_, clone)| RawItem::Clone(clone)));
         self.forms.push(RawForm { node, source, selected, marked: role.is_some(), items, overrides });
+    }
+
+    /// The children of an example with something drawn in them, and what each is one of.
+    fn reference(&mut self, done: Collector) -> Result<(), Error> {
+        let mut children: Vec<(NodeId, Vec<Part>)> = Vec::new();
+        for (part, drawn) in done.parts.into_iter().zip(done.drawn) {
+            let Some(child) = drawn.child else { continue };
+            match children.last_mut().filter(|(node, _)| *node == child) {
+                Some((_, parts)) => parts.push(part),
+                None => children.push((child, vec![part])),
+            }
+        }
+        let mut shapes: BTreeMap<String, String> = BTreeMap::new();
+        let mut examples = Vec::with_capacity(children.len());
+        for (node, parts) in children {
+            let Some(node) = self.resolver.xml.get_node(node) else { continue };
+            let source = self.source(node);
+            let named = node.attribute((NAMESPACE, "symbol")).map(str::trim).filter(|name| !name.is_empty());
+            let cloned = match node.tag_name().name() {
+                "use" => self.resolver.href(node)?.map(|target| self.resolver.reference(target)),
+                _ => None,
+            };
+            let same = shapes.entry(signature(&parts)).or_insert_with(|| source.id.clone());
+            let symbol = named.map(str::to_owned).or(cloned).unwrap_or_else(|| same.clone());
+            examples.push(Example { source, symbol, parts });
+        }
+        let node = self.resolver.xml.get_node(done.node);
+        let flips = node.and_then(|node| node.attribute((NAMESPACE, "flip"))).unwrap_or("");
+        let ids: Vec<&str> = flips.split([' ', ',', ';', '\t', '\n']).filter(|id| !id.is_empty()).collect();
+        let flips = ids.chunks_exact(2).map(|pair| (pair[0].to_owned(), pair[1].to_owned())).collect();
+        self.scene.references.push(Reference { source: done.source, examples, flips });
+        Ok(())
     }
 
     /// A marked clone goes into the form around it.
@@ -390,10 +432,27 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
     }
 }
 
+/// The same for shapes of one look, wherever they are.
+fn signature(parts: &[Part]) -> String {
+    let drawn: Vec<BezPath> = parts.iter().map(|part| part.transform * part.path.clone()).collect();
+    let bounds = drawn.iter().map(Shape::bounding_box).reduce(|a, b| a.union(b)).unwrap_or(Rect::ZERO);
+    let mut out = String::new();
+    for (part, path) in parts.iter().zip(drawn) {
+        let here = Affine::translate(-bounds.center().to_vec2()) * path;
+        out += &path_data(&here, 2);
+        out += &part.style.css();
+    }
+    out
+}
+
 impl Collector {
     /// True for a form, and for a selected group, which may be one without a mark.
     fn is_list(&self) -> bool {
         self.role == Some(Role::Form) || (self.role.is_none() && self.is_group)
+    }
+
+    fn wants_children(&self) -> bool {
+        self.is_list() || self.role == Some(Role::Reference)
     }
 
     /// All shapes as one path.

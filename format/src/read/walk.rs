@@ -272,23 +272,21 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
         let id = place.node.plain("id").filter(|id| !id.is_empty());
         let live =
             id.map(|id| Live { id: id.to_owned(), frame: place.frame, inherited: place.inherited.css() });
+        let inside = || place.node.ancestors().take_while(|&node| !self.gathering.is_innermost(node));
+        let child = inside().last().map(|node| node.id());
         // Its own word, or that of a group around it; the form's is a parameter.
-        let when = place
-            .node
-            .ancestors()
-            .take_while(|&node| !self.gathering.is_innermost(node))
-            .find_map(|node| node.attribute((NAMESPACE, "generations")));
+        let when = inside().find_map(|node| node.attribute((NAMESPACE, "generations")));
         let when = match when.map(str::trim) {
             Some("last") => When::Last,
             Some("inner") => When::Inner,
             _ => When::AsForm,
         };
-        Drawn { when, live, of_clone: false }
+        Drawn { when, live, of_clone: false, child }
     }
 
     fn enter_use(&mut self, place: &Place<'a, 'i>, units: &Units) -> Result<(), Error> {
         let node = place.node;
-        if self.gathering.is_form() && !self.in_clone() {
+        if self.gathering.wants_children() && !self.in_clone() {
             let of_clone = std::mem::take(&mut self.is_replica);
             self.outer_use = Drawn { of_clone, ..self.drawn(place) };
         }
@@ -379,7 +377,7 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
             .at(self.resolver.position(place.node)));
         }
         let part = Part { path, transform: place.transform, style: place.style.as_ref().clone() };
-        let drawn = if self.gathering.is_form() { self.drawn(place) } else { Drawn::default() };
+        let drawn = if self.gathering.wants_children() { self.drawn(place) } else { Drawn::default() };
         self.gathering.add(part, drawn);
         Ok(())
     }

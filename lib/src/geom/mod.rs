@@ -11,3 +11,4 @@ pub mod near;
 pub mod polyline;
 pub mod region;
 pub mod spline;
+pub mod triangulate;

@@ -1,0 +1,237 @@
+//! The example: which of its elements are neighbours, and how each one's neighbours stand around
+//! it (Ijiri et al. 2008, section 4; checklist E-002 to E-009).
+
+use crate::geom::triangulate::delaunay;
+use kurbo::{Point, Rect, Shape, Vec2};
+use rinceau_format::{Error, Reference};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Triangles with a wider angle are skewed (E-006).
+const SKEWED: f64 = 2.0 * std::f64::consts::FRAC_PI_3;
+/// Elements of an example at most: each place is compared with all of them.
+pub(super) const MOST_EXAMPLES: usize = 2000;
+
+/// A neighbour in a ring.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Neighbour {
+    /// From the element in the middle.
+    pub offset: Vec2,
+    /// Index of its symbol.
+    pub symbol: usize,
+}
+
+/// An element of the example.
+#[derive(Clone, Debug)]
+pub(super) struct Element {
+    /// Its place in the reference.
+    pub index: usize,
+    pub at: Point,
+    pub bounds: Rect,
+    pub symbol: usize,
+    /// Its neighbours counter-clockwise; empty on the border, where some are missing.
+    pub ring: Vec<Neighbour>,
+}
+
+/// The example, analysed.
+#[derive(Clone, Debug)]
+pub(super) struct Analysis {
+    pub elements: Vec<Element>,
+    /// Names of the symbols.
+    pub symbols: Vec<String>,
+    /// Mean and least length of edges.
+    pub mean: f64,
+    pub least: f64,
+    /// Least distance between two of each pair of symbols.
+    apart: Vec<f64>,
+}
+
+impl Analysis {
+    /// Finds the neighbours.
+    ///
+    /// Errors: too few elements, or none that has neighbours all around.
+    pub fn new(reference: &Reference, warnings: &mut Vec<String>) -> Result<Self, Error> {
+        let source = &reference.source;
+        if reference.examples.len() > MOST_EXAMPLES {
+            return Err(source.error(
+                "example-too-large",
+                format!("The example '{}' has more than {MOST_EXAMPLES} elements", source.id),
+                "A few dozen are enough: take the others out of its group",
+            ));
+        }
+        let mut symbols: Vec<String> = Vec::new();
+        let mut elements: Vec<Element> = Vec::new();
+        for (index, example) in reference.examples.iter().enumerate() {
+            let boxes = example.parts.iter().map(|part| (part.transform * part.path.clone()).bounding_box());
+            let Some(bounds) = boxes.reduce(|a, b| a.union(b)) else { continue };
+            let at = bounds.center();
+            if elements.iter().any(|other| other.at.distance(at) < 1e-6 * bounds.size().max_side().max(1e-9))
+            {
+                warnings.push(format!(
+                    "{}: '{}' lies in the same place as another element of the example and is left out",
+                    example.source.at, example.source.id
+                ));
+                continue;
+            }
+            let symbol = symbols.iter().position(|name| *name == example.symbol).unwrap_or_else(|| {
+                symbols.push(example.symbol.clone());
+                symbols.len() - 1
+            });
+            elements.push(Element { index, at, bounds, symbol, ring: Vec::new() });
+        }
+        let points: Vec<Point> = elements.iter().map(|element| element.at).collect();
+        let mut triangles = delaunay(&points);
+        settle(&mut triangles, &points);
+        triangles.retain(|&[a, b, c]| !is_skewed(points[a], points[b], points[c]));
+        for (a, b) in &reference.flips {
+            let index =
+                |id: &String| elements.iter().position(|one| reference.examples[one.index].source.id == *id);
+            let flipped = index(a).zip(index(b)).is_some_and(|edge| flip(&mut triangles, edge));
+            if !flipped {
+                warnings.push(format!(
+                    "{}: '{a}' and '{b}' share no edge with triangles on both sides, so it cannot be flipped",
+                    source.at
+                ));
+            }
+        }
+        let edges: BTreeSet<(usize, usize)> = triangles.iter().flat_map(|t| sides(*t)).map(sorted).collect();
+        for index in inner(&triangles, |index| elements[index].symbol) {
+            let centre = points[index];
+            let around = edges.iter().filter_map(|&(a, b)| match index {
+                i if i == a => Some(b),
+                i if i == b => Some(a),
+                _ => None,
+            });
+            let mut ring: Vec<Neighbour> = around
+                .map(|other| Neighbour { offset: points[other] - centre, symbol: elements[other].symbol })
+                .collect();
+            ring.sort_by(|a, b| angle(a.offset).total_cmp(&angle(b.offset)));
+            elements[index].ring = ring;
+        }
+        if elements.iter().all(|element| element.ring.is_empty()) {
+            return Err(source.error(
+                "no-inner-element",
+                format!("No element of the example '{}' has neighbours all around it", source.id),
+                "Draw more of them: about three rows of three, so that at least one lies in the middle",
+            ));
+        }
+        let lengths = edges.iter().map(|&(a, b)| points[a].distance(points[b]));
+        let mean = lengths.clone().sum::<f64>() / edges.len() as f64;
+        let least = lengths.fold(f64::INFINITY, f64::min);
+        let n = symbols.len();
+        let mut apart = vec![f64::INFINITY; n * n];
+        for (i, a) in elements.iter().enumerate() {
+            for b in &elements[..i] {
+                for (s, t) in [(a.symbol, b.symbol), (b.symbol, a.symbol)] {
+                    apart[s * n + t] = apart[s * n + t].min(a.at.distance(b.at));
+                }
+            }
+        }
+        Ok(Analysis { elements, symbols, mean, least, apart })
+    }
+
+    /// Least distance between two symbols in the example.
+    pub fn apart(&self, a: usize, b: usize) -> f64 {
+        self.apart[a * self.symbols.len() + b]
+    }
+
+    /// Elements of the example with a whole ring.
+    pub fn inner(&self) -> impl Iterator<Item = usize> {
+        (0..self.elements.len()).filter(|&i| !self.elements[i].ring.is_empty())
+    }
+}
+
+pub(super) fn angle(v: Vec2) -> f64 {
+    libm::atan2(v.y, v.x)
+}
+
+fn sides([a, b, c]: [usize; 3]) -> [(usize, usize); 3] {
+    [(a, b), (b, c), (c, a)]
+}
+
+fn sorted((a, b): (usize, usize)) -> (usize, usize) {
+    (a.min(b), a.max(b))
+}
+
+fn is_skewed(a: Point, b: Point, c: Point) -> bool {
+    let wide = |p: Point, q: Point, r: Point| {
+        let (u, v) = (q - p, r - p);
+        libm::atan2(u.cross(v).abs(), u.dot(v)) > SKEWED + 1e-9
+    };
+    wide(a, b, c) || wide(b, c, a) || wide(c, a, b)
+}
+
+/// Where four elements lie on a circle, as in bricks and grids, either diagonal would do, and rounding
+/// chooses now this one and now that. The more level one is taken everywhere, of two alike the one
+/// that falls to the right: what an artist would flip edges for (E-009).
+fn settle(triangles: &mut [[usize; 3]], points: &[Point]) {
+    /// Angles opposite the edge add up to half a turn on a circle; drawn by hand, nearly.
+    const NEARLY: f64 = 0.06;
+    const PASSES: usize = 4;
+    let angle_at = |o: usize, a: usize, b: usize| {
+        let (u, v) = (points[a] - points[o], points[b] - points[o]);
+        libm::atan2(u.cross(v).abs(), u.dot(v))
+    };
+    // Steepness, and which way it falls.
+    let rank = |a: usize, b: usize| {
+        let way = points[b] - points[a];
+        let steep = (way.y.abs() / way.hypot() * 20.0).round();
+        (steep, way.x * way.y < 0.0)
+    };
+    for _ in 0..PASSES {
+        let mut edges: BTreeMap<(usize, usize), Vec<usize>> = BTreeMap::new();
+        for (i, triangle) in triangles.iter().enumerate() {
+            sides(*triangle).into_iter().for_each(|side| edges.entry(sorted(side)).or_default().push(i));
+        }
+        let mut touched = vec![false; triangles.len()];
+        let mut flipped = false;
+        for (&(a, b), of) in edges.iter().filter(|(_, of)| of.len() == 2) {
+            let apex = |i: usize| triangles[of[i]].into_iter().find(|&v| v != a && v != b);
+            let (Some(c), Some(d)) = (apex(0), apex(1)) else { continue };
+            let around = angle_at(c, a, b) + angle_at(d, a, b);
+            let is_round = (around - std::f64::consts::PI).abs() < NEARLY;
+            if of.iter().any(|&i| touched[i]) || !is_round || rank(c, d) >= rank(a, b) {
+                continue;
+            }
+            (triangles[of[0]], triangles[of[1]]) = ([a, c, d], [b, c, d]);
+            of.iter().for_each(|&i| touched[i] = true);
+            flipped = true;
+        }
+        if !flipped {
+            break;
+        }
+    }
+}
+
+/// Replaces the common edge of two triangles by the other diagonal. False if there are no two.
+fn flip(triangles: &mut [[usize; 3]], edge: (usize, usize)) -> bool {
+    let has = |t: &[usize; 3]| sides(*t).into_iter().any(|side| sorted(side) == sorted(edge));
+    let found: Vec<usize> = (0..triangles.len()).filter(|&i| has(&triangles[i])).collect();
+    let [i, j] = found[..] else { return false };
+    let apex = |t: [usize; 3]| t.into_iter().find(|&v| v != edge.0 && v != edge.1);
+    let (Some(c), Some(d)) = (apex(triangles[i]), apex(triangles[j])) else { return false };
+    triangles[i] = [edge.0, c, d];
+    triangles[j] = [edge.1, c, d];
+    true
+}
+
+/// Elements whose triangles go all around them: every one of their edges has two (E-008).
+///
+/// In rows that are set off against each other the triangulation bridges the notches at their ends,
+/// and an element behind such a bridge lacks a neighbour that nobody would miss. So those opposite
+/// an edge of the border are left out too, unless a symbol would be lost with them.
+fn inner(triangles: &[[usize; 3]], symbol: impl Fn(usize) -> usize) -> Vec<usize> {
+    let mut count: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    for side in triangles.iter().flat_map(|t| sides(*t)) {
+        *count.entry(sorted(side)).or_default() += 1;
+    }
+    let all: BTreeSet<usize> = triangles.iter().flatten().copied().collect();
+    let border: BTreeSet<usize> =
+        count.iter().filter(|(_, count)| **count < 2).flat_map(|(&(a, b), _)| [a, b]).collect();
+    let inner: BTreeSet<usize> = all.difference(&border).copied().collect();
+    let opposite = triangles.iter().flat_map(|&[a, b, c]| [((a, b), c), ((b, c), a), ((c, a), b)]);
+    let behind: BTreeSet<usize> =
+        opposite.filter(|(side, _)| count[&sorted(*side)] < 2).map(|(_, apex)| apex).collect();
+    let deep: BTreeSet<usize> = inner.difference(&behind).copied().collect();
+    let symbols = |set: &BTreeSet<usize>| set.iter().map(|&i| symbol(i)).collect::<BTreeSet<usize>>();
+    if symbols(&deep) == symbols(&inner) { deep } else { inner }.into_iter().collect()
+}

@@ -1,0 +1,458 @@
+//! Growth from seeds (Ijiri et al. 2008, sections 5.1 and 5.4; checklist E-020 to E-036).
+//!
+//! Departures. Where every ring is smaller than what surrounds a seed, the paper ignores the
+//! element; here the seed's own symbol is given up first, and then its farthest neighbours, so that
+//! no hole stays. A seed of lower priority that has to wait comes again when the seed it waits for
+//! has had its turn.
+
+use super::example::Analysis;
+use super::ground::Ground;
+use super::ring::{Around, Match, Turn, Weights, best, rotated, sort_around};
+use crate::geom::near::{PointGrid, crosses};
+use kurbo::{Point, Vec2};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Nearer than this share of the shortest edge, two objects are one (E-032).
+const SHORT: f64 = 0.5;
+/// An angle less than this share of the example's is too narrow (E-033).
+const NARROW: f64 = 0.5;
+/// An edge this many times longer than the example's makes room for another seed (E-035).
+const LONG: f64 = 1.5;
+/// Seeds of higher priority count within so many mean edges (E-023).
+const NEIGHBOURHOOD: f64 = 5.0;
+
+/// An element or a seed.
+#[derive(Clone, Debug)]
+pub(super) struct Object {
+    pub at: Point,
+    pub symbol: Option<usize>,
+    /// Which element of the example it is a copy of, and how it is turned; seeds are of none.
+    pub copy: Option<(usize, Vec2)>,
+    pub edges: Vec<u32>,
+    /// Where its neighbours should stand around it.
+    pub ring: Vec<(u32, Vec2)>,
+    /// A seed that came to nothing.
+    pub is_gone: bool,
+}
+
+/// What the growth goes by.
+pub(super) struct Rules {
+    pub weights: Weights,
+    pub mode: Mode,
+    /// Rank of each symbol, 0 first.
+    pub ranks: Vec<usize>,
+    /// Elements at most.
+    pub most: usize,
+}
+
+/// How the example is turned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Mode {
+    Fixed,
+    Rotate,
+    Flow,
+}
+
+/// A distance that can be sorted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Distance(f64);
+
+impl Eq for Distance {}
+
+impl PartialOrd for Distance {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Distance {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
+
+/// A growing arrangement.
+pub(super) struct Arrangement<'a> {
+    example: &'a Analysis,
+    ground: &'a Ground,
+    rules: &'a Rules,
+    pub objects: Vec<Object>,
+    /// First elements: they stay where they are.
+    pub starts: Vec<u32>,
+    /// Objects that are elements, in the order in which they grew.
+    pub grown: Vec<u32>,
+    grid: PointGrid,
+    heap: BinaryHeap<Reverse<(Distance, u32)>>,
+}
+
+impl<'a> Arrangement<'a> {
+    pub fn new(example: &'a Analysis, ground: &'a Ground, rules: &'a Rules) -> Self {
+        let grid = PointGrid::new(ground.bounds, example.mean);
+        Arrangement {
+            example,
+            ground,
+            rules,
+            objects: Vec::new(),
+            starts: Vec::new(),
+            grown: Vec::new(),
+            grid,
+            heap: BinaryHeap::new(),
+        }
+    }
+
+    /// Adds a seed that growth starts from.
+    pub fn start(&mut self, at: Point) {
+        let seed = self.add(at, None);
+        self.starts.push(seed);
+        self.heap.push(Reverse((Distance(0.0), seed)));
+    }
+
+    /// True if nothing is near a place.
+    pub fn is_empty_at(&self, at: Point, reach: f64) -> bool {
+        !self.grid.any_within(at, reach, |_, other| !self.objects[other as usize].is_gone)
+    }
+
+    fn add(&mut self, at: Point, symbol: Option<usize>) -> u32 {
+        let index = self.objects.len() as u32;
+        self.objects.push(Object {
+            at,
+            symbol,
+            copy: None,
+            edges: Vec::new(),
+            ring: Vec::new(),
+            is_gone: false,
+        });
+        self.grid.insert(at, index);
+        index
+    }
+
+    /// The grid anew, after objects moved.
+    pub fn moved(&mut self) {
+        self.grid = PointGrid::new(self.ground.bounds, self.example.mean);
+        for (i, object) in self.objects.iter().enumerate().filter(|(_, object)| !object.is_gone) {
+            self.grid.insert(object.at, i as u32);
+        }
+    }
+
+    /// Lets up to `steps` seeds grow, the nearest to the start first (E-021). False if there are no
+    /// more.
+    pub fn grow(&mut self, steps: usize) -> bool {
+        for _ in 0..steps {
+            if self.grown.len() >= self.rules.most {
+                return false;
+            }
+            let Some(Reverse((Distance(distance), seed))) = self.heap.pop() else { return false };
+            let object = &self.objects[seed as usize];
+            if object.is_gone || object.copy.is_some() {
+                continue;
+            }
+            if let Some(later) = self.more_important(seed) {
+                // Behind the one that it waits for.
+                let behind = distance.max(later) * (1.0 + 1e-9) + 1e-9;
+                self.heap.push(Reverse((Distance(behind), seed)));
+                continue;
+            }
+            self.grow_at(seed);
+        }
+        true
+    }
+
+    fn distance(&self, at: Point) -> f64 {
+        let starts = self.starts.iter().map(|&start| self.objects[start as usize].at.distance(at));
+        starts.fold(f64::INFINITY, f64::min)
+    }
+
+    fn rank(&self, symbol: Option<usize>) -> usize {
+        symbol.map_or(usize::MAX, |symbol| self.rules.ranks[symbol])
+    }
+
+    /// How far from the start the farthest seed of higher priority nearby is (E-023).
+    fn more_important(&self, seed: u32) -> Option<f64> {
+        let object = &self.objects[seed as usize];
+        let own = self.rank(object.symbol);
+        if own == 0 || self.rules.ranks.iter().all(|&rank| rank == 0) {
+            return None;
+        }
+        let reach = NEIGHBOURHOOD * self.example.mean;
+        let mut farthest: Option<f64> = None;
+        self.grid.visit(object.at, reach, |at, other| {
+            let it = &self.objects[other as usize];
+            if !it.is_gone
+                && it.copy.is_none()
+                && self.rank(it.symbol) < own
+                && at.distance(object.at) < reach
+            {
+                let distance = self.distance(at);
+                farthest = Some(farthest.map_or(distance, |most| most.max(distance)));
+            }
+            true
+        });
+        farthest
+    }
+
+    /// Replaces a seed by the element that fits best, and puts seeds around it.
+    fn grow_at(&mut self, seed: u32) {
+        let Some((around, found)) = self.fitting(seed) else {
+            self.objects[seed as usize].is_gone = true;
+            self.detach(seed);
+            return;
+        };
+        let element = &self.example.elements[found.element];
+        {
+            let object = &mut self.objects[seed as usize];
+            object.copy = Some((found.element, found.turn));
+            object.symbol = Some(element.symbol);
+        }
+        self.grown.push(seed);
+        let m = element.ring.len();
+        let offset = |i: usize| rotated(element.ring[(found.shift + i) % m].offset, found.turn);
+        // The ring counter-clockwise: neighbours there are, then new ones.
+        let mut members: Vec<Option<u32>> = around.iter().map(|&other| Some(other)).collect();
+        members.resize(m, None);
+        for i in around.len()..m {
+            let symbol = element.ring[(found.shift + i) % m].symbol;
+            members[i] = self.place(seed, offset(i), (&members, i, &offset), symbol);
+        }
+        for (i, member) in members.iter().enumerate() {
+            if let Some(other) = *member {
+                self.connect(seed, other);
+                self.objects[seed as usize].ring.push((other, offset(i)));
+            }
+        }
+        for i in 0..m {
+            let j = (i + 1) % m;
+            if let (Some(a), Some(b)) = (members[i], members[j])
+                && (i >= around.len() || j >= around.len())
+                && a != b
+            {
+                self.close(seed, (a, b), (offset(j) - offset(i)).hypot());
+            }
+        }
+    }
+
+    /// Neighbours of a seed counter-clockwise, and the element of the example that suits them best.
+    fn fitting(&self, seed: u32) -> Option<(Vec<u32>, Match)> {
+        let object = &self.objects[seed as usize];
+        let mut neighbours: Vec<(u32, Around)> = Vec::with_capacity(8);
+        for &other in &object.edges {
+            let it = &self.objects[other as usize];
+            let around =
+                Around { offset: it.at - object.at, symbol: it.symbol, copy_of: it.copy.map(|copy| copy.0) };
+            neighbours.push((other, around));
+        }
+        let turn = match self.rules.mode {
+            Mode::Rotate if neighbours.is_empty() => Turn::By(Vec2::new(1.0, 0.0)),
+            Mode::Rotate => Turn::Free,
+            Mode::Fixed => Turn::By(Vec2::new(1.0, 0.0)),
+            Mode::Flow => {
+                let turns = object.edges.iter().filter_map(|&other| self.objects[other as usize].copy);
+                let mean = turns.fold(Vec2::ZERO, |sum, (_, turn)| sum + turn);
+                let towards = (mean.hypot() > 1e-9).then_some(mean);
+                let flow = self.ground.direction(object.at, towards);
+                // Where the flow has no direction, as the neighbours are.
+                Turn::By(flow.or(towards.map(|way| way / way.hypot())).unwrap_or(Vec2::new(1.0, 0.0)))
+            }
+        };
+        let rules = (turn, self.rules.weights);
+        let mut symbol = object.symbol;
+        loop {
+            let are_linked =
+                |a: &(u32, Around), b: &(u32, Around)| self.objects[a.0 as usize].edges.contains(&b.0);
+            sort_around(&mut neighbours, |(_, around)| around.offset, are_linked);
+            let around: Vec<Around> = neighbours.iter().map(|(_, around)| *around).collect();
+            if let Some(found) = best(self.example, &around, symbol, rules) {
+                return Some((neighbours.into_iter().map(|(other, _)| other).collect(), found));
+            }
+            if symbol.take().is_some() {
+                continue;
+            }
+            let far = |i: &usize| Distance(neighbours[*i].1.offset.hypot());
+            let farthest = (0..neighbours.len()).max_by_key(far)?;
+            neighbours.remove(farthest);
+        }
+    }
+
+    /// A new neighbour in its place: a seed, or what is there already; `None` where nothing may be.
+    fn place(
+        &mut self,
+        seed: u32,
+        offset: Vec2,
+        (members, i, offset_of): (&[Option<u32>], usize, &dyn Fn(usize) -> Vec2),
+        symbol: usize,
+    ) -> Option<u32> {
+        let from = self.objects[seed as usize].at;
+        let at = from + offset;
+        if let Some(near) = self.nearest(seed, at, SHORT * self.example.least) {
+            let to = self.objects[near as usize].at;
+            let is_linked = self.objects[seed as usize].edges.contains(&near);
+            return (!members.contains(&Some(near)) && (is_linked || !self.collides((seed, near), from, to)))
+                .then_some(near);
+        }
+        if self.ground.divides(from, at) {
+            return None;
+        }
+        if self.is_crowded(seed, at, symbol) {
+            return None;
+        }
+        let m = members.len();
+        for (j, is_before) in [((i + m - 1) % m, true), ((i + 1) % m, false)] {
+            let Some(other) = members[j] else { continue };
+            let beside = self.objects[other as usize].at - from;
+            let between = |a: Vec2, b: Vec2| libm::atan2(a.cross(b), a.dot(b));
+            let (actual, original) = match is_before {
+                true => (between(beside, offset), between(offset_of(j), offset)),
+                false => (between(offset, beside), between(offset, offset_of(j))),
+            };
+            let original = if original < 0.0 { original + std::f64::consts::TAU } else { original };
+            if m > 1 && actual < NARROW * original.min(std::f64::consts::PI) {
+                return None;
+            }
+        }
+        if self.collides((seed, seed), from, at) {
+            return None;
+        }
+        Some(self.sow(at, Some(symbol)))
+    }
+
+    /// A seed. Outside the ground it never grows, but it stands for a neighbour: without it rings at
+    /// the outline would have holes, and neighbours would be taken for each other.
+    fn sow(&mut self, at: Point, symbol: Option<usize>) -> u32 {
+        let new = self.add(at, symbol);
+        if self.ground.allows(at) {
+            let distance = self.distance(at);
+            self.heap.push(Reverse((Distance(distance), new)));
+        }
+        new
+    }
+
+    /// True if something is nearer to a new seed than the example's elements of these symbols are to
+    /// each other.
+    fn is_crowded(&self, seed: u32, at: Point, symbol: usize) -> bool {
+        const CROWDED: f64 = 0.8;
+        let mut found = false;
+        self.grid.visit(at, self.example.mean, |p, other| {
+            let it = &self.objects[other as usize];
+            let apart = it.symbol.map_or(self.example.least, |own| self.example.apart(symbol, own));
+            found = other != seed && !it.is_gone && p.distance(at) < CROWDED * apart.min(self.example.mean);
+            !found
+        });
+        found
+    }
+
+    /// The edge between two neighbours of an element; where it is too long, a seed between them; and
+    /// where something lies in the triangle, edges to that.
+    fn close(&mut self, centre: u32, (a, b): (u32, u32), original: f64) {
+        let (o, p, q) =
+            (self.objects[centre as usize].at, self.objects[a as usize].at, self.objects[b as usize].at);
+        if self.objects[a as usize].edges.contains(&b) {
+            return;
+        }
+        if self.collides((a, b), p, q) {
+            self.join_inside(centre, (a, b));
+            return;
+        }
+        if p.distance(q) > LONG * original && self.extra(centre, (a, b), (o, p, q)) {
+            return;
+        }
+        self.connect(a, b);
+    }
+
+    /// A seed of any symbol on the bisector of a wide angle (E-035).
+    fn extra(&mut self, centre: u32, (a, b): (u32, u32), (o, p, q): (Point, Point, Point)) -> bool {
+        let (u, v) = (p - o, q - o);
+        let (lu, lv) = (u.hypot(), v.hypot());
+        let way = u / lu + v / lv;
+        // Across, where the angle is straight.
+        let way = if way.hypot() < 1e-6 { Vec2::new(-u.y, u.x) / lu } else { way / way.hypot() };
+        let way = if u.cross(v) < 0.0 { -way } else { way };
+        let at = o + 0.5 * (lu + lv) * way;
+        let is_free = self.nearest(centre, at, SHORT * self.example.least).is_none();
+        if !is_free
+            || self.ground.divides(o, at)
+            || self.collides((centre, centre), o, at)
+            || self.collides((a, a), p, at)
+            || self.collides((b, b), q, at)
+        {
+            return false;
+        }
+        let new = self.sow(at, None);
+        for other in [centre, a, b] {
+            self.connect(new, other);
+        }
+        true
+    }
+
+    /// Joins what lies in a triangle to its corners (E-036).
+    fn join_inside(&mut self, centre: u32, (a, b): (u32, u32)) {
+        let [o, p, q] = [centre, a, b].map(|i| self.objects[i as usize].at);
+        let reach = p.distance(q).max(o.distance(p)).max(o.distance(q));
+        let side = |u: Point, v: Point, at: Point| (v - u).cross(at - u);
+        let sense = side(o, p, q).signum();
+        let mut inside: Vec<u32> = Vec::new();
+        self.grid.visit(o, reach, |at, other| {
+            let is_inside = [(o, p), (p, q), (q, o)].into_iter().all(|(u, v)| side(u, v, at) * sense > 0.0);
+            if is_inside && !self.objects[other as usize].is_gone && ![centre, a, b].contains(&other) {
+                inside.push(other);
+            }
+            true
+        });
+        for other in inside {
+            let at = self.objects[other as usize].at;
+            for (corner, from) in [(centre, o), (a, p), (b, q)] {
+                let is_linked = self.objects[other as usize].edges.contains(&corner);
+                if !is_linked && !self.collides((corner, other), from, at) {
+                    self.connect(corner, other);
+                }
+            }
+        }
+    }
+
+    /// The nearest object within a radius, another than one's own.
+    fn nearest(&self, own: u32, at: Point, radius: f64) -> Option<u32> {
+        let mut nearest: Option<(f64, u32)> = None;
+        self.grid.visit(at, radius, |p, other| {
+            let distance = p.distance(at);
+            if other != own
+                && distance < radius
+                && !self.objects[other as usize].is_gone
+                && nearest.is_none_or(|best| (distance, other) < best)
+            {
+                nearest = Some((distance, other));
+            }
+            true
+        });
+        nearest.map(|(_, other)| other)
+    }
+
+    /// True if a new edge would cross another. `ends` are objects at its ends.
+    fn collides(&self, ends: (u32, u32), p: Point, q: Point) -> bool {
+        let longest = 2.0 * self.example.mean;
+        let reach = 0.5 * p.distance(q) + 0.5 * longest;
+        let is_end = |i: u32| i == ends.0 || i == ends.1;
+        let mut found = false;
+        self.grid.visit(p.midpoint(q), reach, |at, other| {
+            if is_end(other) || self.objects[other as usize].is_gone {
+                return true;
+            }
+            let edges = self.objects[other as usize].edges.iter();
+            found =
+                edges.filter(|&&to| !is_end(to)).any(|&to| crosses(p, q, at, self.objects[to as usize].at));
+            !found
+        });
+        found
+    }
+
+    fn connect(&mut self, a: u32, b: u32) {
+        if a != b && !self.objects[a as usize].edges.contains(&b) {
+            self.objects[a as usize].edges.push(b);
+            self.objects[b as usize].edges.push(a);
+        }
+    }
+
+    fn detach(&mut self, object: u32) {
+        for other in std::mem::take(&mut self.objects[object as usize].edges) {
+            self.objects[other as usize].edges.retain(|&edge| edge != object);
+        }
+    }
+}

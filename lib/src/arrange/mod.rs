@@ -1,0 +1,369 @@
+//! Arrangement by example: a drawn pattern that goes on.
+//!
+//! Takashi Ijiri, Radomír Měch, Takeo Igarashi, Gavin Miller: *An Example-based Procedural System
+//! for Element Arrangement*, Computer Graphics Forum 27(2), 2008.
+//!
+//! 1. Find which elements of the example are neighbours (section 4, E-004 to E-009): `example`.
+//! 2. Find where things may grow: shapes, sprayed strokes, boundaries, flow (section 3): `ground`.
+//! 3. Let seeds grow one by one into the element whose neighbours in the example stand most like
+//!    those around the seed (sections 5.1 to 5.4, E-020 to E-036): `grow`, `ring`.
+//! 4. Between and after that let all rings come as near to the example's as they can (section 5.5,
+//!    E-040 to E-043): `relax`.
+//! 5. Draw the elements that lie in the shape, varied if asked for (E-003): `artwork`.
+//!
+//! Departures: growth starts again where some of the shape was not reached, so that a shape in
+//! several pieces fills; relaxation runs each time the pattern has grown by a quarter, not after
+//! every element, which costs a hundredth and comes to the same; the flow is interpolated by the
+//! direction field of the house, which knows walls, with the sense of the neighbours. Where a ring
+//! fits nowhere see `grow`.
+//!
+//! Not yet: rings of two steps and a coarse pass (E-060, E-062), elements compared by their extents
+//! (E-063), patterns that repeat on a torus.
+
+mod artwork;
+mod example;
+mod ground;
+mod grow;
+mod params;
+mod relax;
+mod ring;
+
+pub use params::Params;
+
+use crate::geom::boolean;
+use crate::progress::Progress;
+use crate::rng::Rng;
+use crate::shapes::{Shapes, polylines};
+use artwork::{Drawing, Outline};
+use example::Analysis;
+use ground::Ground;
+use grow::{Arrangement, Mode, Rules};
+use kurbo::{BezPath, Point, Rect};
+use rinceau_format::{Artwork, Container, Error, FillRule, Guide, Reference, Scene, Source, decimals_for};
+use ring::Weights;
+use std::collections::BTreeMap;
+
+/// Elements of one run at most.
+pub const MOST_ELEMENTS: usize = 200_000;
+/// Elements where there is neither a shape nor a number.
+const SOME: usize = 200;
+
+/// What a result is made from: shapes and sprayed strokes, or else the example.
+pub fn sources(scene: &Scene) -> Vec<&Source> {
+    let shapes = scene.containers.iter().map(|container| &container.source);
+    let all: Vec<&Source> = shapes.chain(scene.sprays.iter().map(|spray| &spray.source)).collect();
+    if all.is_empty() { scene.references.iter().map(|reference| &reference.source).collect() } else { all }
+}
+
+/// Continues an example over a scene.
+///
+/// Errors: there is no example, or none of its elements has neighbours all around; a shape that
+/// cannot be used; a symbol that the example does not have.
+pub fn generate(
+    params: &Params,
+    scene: &Scene,
+    rng: &mut Rng,
+    progress: &mut dyn Progress,
+) -> Result<Artwork, Error> {
+    progress.step("prepare", 0.0);
+    if scene.references.is_empty() {
+        return Err(Error::new(
+            "no-reference",
+            "There is no example to continue",
+            "Group some elements as they should be arranged, and mark the group as reference (Extensions > Ornament > Mark as)",
+        ));
+    }
+    let scene = &with_sprays(scene);
+    let mut artwork = Artwork { complete: true, warnings: scene.warnings.clone(), ..Artwork::default() };
+    let analyses: Vec<Analysis> = scene
+        .references
+        .iter()
+        .map(|reference| Analysis::new(reference, &mut artwork.warnings))
+        .collect::<Result<_, Error>>()?;
+    let mut drawing = Drawing::new(scene);
+    let mut sum = Sum::default();
+    if scene.containers.is_empty() {
+        artwork.decimals = decimals_for(scene.view.size().max_side());
+        let one = One { scene, reference: 0, params, outline: None };
+        one.arrange(&analyses, &mut drawing, (rng, &mut sum), progress)?;
+    } else {
+        let shapes = Shapes::new(scene, &[])?;
+        artwork.decimals = shapes.decimals();
+        for (index, container) in scene.containers.iter().enumerate() {
+            let overrides = container.overrides.iter().map(|(name, value)| (name.as_str(), value.as_str()));
+            let own = params.overridden(overrides).map_err(|error| error.at(container.source.at))?;
+            let gap = own.gap.to_user(scene.px_per_unit);
+            let Some(outline) = Outline::new(&shapes, index, gap) else {
+                artwork.warnings.push(format!(
+                    "{}: nothing of the container '{}' is left free",
+                    container.source.at, container.source.id
+                ));
+                continue;
+            };
+            // A reference for each shape, if there are several.
+            let reference = index.min(scene.references.len() - 1);
+            let one = One { scene, reference, params: &own, outline: Some(&outline) };
+            one.arrange(&analyses, &mut drawing, (rng, &mut sum), progress)?;
+        }
+    }
+    progress.step("artwork", 0.0);
+    artwork.complete = !sum.is_late;
+    artwork.counts = BTreeMap::from([
+        ("elements".to_owned(), drawing.count() as f64),
+        ("grown".to_owned(), sum.grown as f64),
+        ("residual".to_owned(), sum.residual),
+    ]);
+    if drawing.count() == 0 {
+        return Err(Error::new(
+            "nothing-fits",
+            "No element of the example fits into the shape",
+            "Make the shape larger, draw the example smaller, or let elements cross the outline",
+        ));
+    }
+    (artwork.groups, artwork.symbols) = drawing.into_parts();
+    Ok(artwork)
+}
+
+/// A scene in which sprayed strokes are shapes (E-022).
+fn with_sprays(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    let tolerance = 1e-4 * scene.view.size().max_side();
+    for spray in &scene.sprays {
+        let mut contours = Vec::new();
+        for subpath in crate::geom::flatten::flatten(&spray.path, tolerance) {
+            contours.extend(boolean::stroked(&subpath.points, subpath.closed, spray.width));
+        }
+        let mut path = BezPath::new();
+        for contour in boolean::simplified(&contours, false) {
+            path.move_to(contour[0]);
+            contour[1..].iter().for_each(|&p| path.line_to(p));
+            path.close_path();
+        }
+        if !path.is_empty() {
+            let outlines = vec![rinceau_format::Outline { path, rule: FillRule::EvenOdd }];
+            let source = spray.source.clone();
+            scene.containers.push(Container { source, outlines, fill: None, overrides: BTreeMap::new() });
+        }
+    }
+    scene
+}
+
+/// What is known of all shapes together.
+#[derive(Default)]
+struct Sum {
+    grown: usize,
+    /// The largest root of the mean square by which rings differ, in mean edges.
+    residual: f64,
+    is_late: bool,
+}
+
+/// One shape, or the open plane.
+struct One<'a> {
+    scene: &'a Scene,
+    reference: usize,
+    params: &'a Params,
+    outline: Option<&'a Outline>,
+}
+
+impl One<'_> {
+    fn arrange(
+        &self,
+        analyses: &[Analysis],
+        drawing: &mut Drawing,
+        (rng, sum): (&mut Rng, &mut Sum),
+        progress: &mut dyn Progress,
+    ) -> Result<(), Error> {
+        let example = &analyses[self.reference];
+        let reference = &self.scene.references[self.reference];
+        let rules = self.rules(example, reference, sum)?;
+        let ground = self.ground(example, &rules)?;
+        let mut arrangement = Arrangement::new(example, &ground, &rules);
+        let starts: Vec<Point> =
+            self.scene.seeds.iter().map(|seed| seed.at).filter(|&at| ground.allows(at)).collect();
+        match starts.is_empty() {
+            true => arrangement.start(self.innermost(&ground)),
+            false => starts.into_iter().for_each(|at| arrangement.start(at)),
+        }
+        self.fill(&mut arrangement, &ground, example, (&rules, sum), progress);
+        sum.grown += arrangement.grown.len();
+        sum.residual = sum.residual.max(relax::residual(&arrangement.objects) / example.mean);
+        drawing.add(&arrangement, (example, reference), self.outline, (self.params, rng))
+    }
+
+    fn rules(&self, example: &Analysis, reference: &Reference, sum: &Sum) -> Result<Rules, Error> {
+        let params = self.params;
+        let mut ranks = vec![0; example.symbols.len()];
+        if params.priority != "none" {
+            let names: Vec<&str> = params.priority.split_whitespace().collect();
+            for name in &names {
+                if !example.symbols.iter().any(|symbol| symbol == name) {
+                    return Err(reference.source.error(
+                        "no-symbol",
+                        format!("The example '{}' has no symbol '{name}'", reference.source.id),
+                        format!("Use one of {}", example.symbols.join(", ")),
+                    ));
+                }
+            }
+            for (symbol, rank) in example.symbols.iter().zip(&mut ranks) {
+                *rank = names.iter().position(|name| name == symbol).unwrap_or(names.len());
+            }
+        }
+        let mode = match params.mode.as_str() {
+            "rotate" => Mode::Rotate,
+            "flow" => Mode::Flow,
+            _ => Mode::Fixed,
+        };
+        let weights = Weights { place: params.w_place, symbol: params.w_symbol, repeat: params.w_repeat };
+        let room = MOST_ELEMENTS.saturating_sub(sum.grown);
+        let most = match (params.count, self.outline) {
+            (0, None) => SOME,
+            (0, Some(_)) => room,
+            (count, _) => count.min(room),
+        };
+        Ok(Rules { weights, mode, ranks, most })
+    }
+
+    fn ground(&self, example: &Analysis, rules: &Rules) -> Result<Ground, Error> {
+        let middles = self.outline.map(|outline| outline.middles(&self.params.edge, example));
+        let bounds = match &middles {
+            Some(region) => region.bounds(),
+            None => {
+                // So many elements surely find room around the start.
+                let side = example.mean * (4.0 + 3.0 * (rules.most as f64).sqrt());
+                let seed = self.scene.seeds.first().map_or(self.scene.view.center(), |seed| seed.at);
+                Rect::from_center_size(seed, (2.0 * side, 2.0 * side))
+            }
+        };
+        if let Some(region) = &middles {
+            let expected = region.area() / (example.mean * example.mean);
+            if self.params.count == 0 && expected > MOST_ELEMENTS as f64 {
+                return Err(Error::new(
+                    "too-many-elements",
+                    format!("The shape would take about {expected:.0} elements, more than {MOST_ELEMENTS}"),
+                    "Draw the example larger, or give a number of elements",
+                ));
+            }
+        }
+        let tolerance = 0.02 * example.mean;
+        let lines = |guides: &[Guide]| -> Vec<Vec<Point>> {
+            polylines(guides, tolerance)
+                .into_iter()
+                .map(|(_, line)| line)
+                .filter(|line| line.len() > 1)
+                .collect()
+        };
+        let with_flow = rules.mode == Mode::Flow;
+        let guides = lines(&self.scene.guides);
+        let ground = Ground::new(
+            middles,
+            bounds.inflate(1e-9, 1e-9),
+            (guides, with_flow),
+            &lines(&self.scene.boundaries),
+            example.mean,
+        );
+        if with_flow && ground.flow.is_none() {
+            return Err(Error::new(
+                "no-guide",
+                "There is no guide in the shape that the elements could turn with",
+                "Draw a line along the flow and mark it as guide, or turn elements as drawn",
+            ));
+        }
+        Ok(ground)
+    }
+
+    /// The place farthest from the outline.
+    fn innermost(&self, ground: &Ground) -> Point {
+        let Some(region) = &ground.middles else { return ground.bounds.center() };
+        let (bounds, reach) = (ground.bounds, ground.bounds.size().max_side());
+        const STEPS: usize = 24;
+        let place = |i: usize| {
+            let share = |i: usize| (i as f64 + 0.5) / STEPS as f64;
+            let (x, y) = (share(i % STEPS), share(i / STEPS));
+            Point::new(bounds.x0 + x * bounds.width(), bounds.y0 + y * bounds.height())
+        };
+        let places = (0..STEPS * STEPS).map(place).filter(|&at| ground.allows(at));
+        let best = places.map(|at| (region.distance(at, reach), at)).max_by(|a, b| a.0.total_cmp(&b.0));
+        best.map_or_else(|| region.contours()[0][0], |(_, at)| at)
+    }
+
+    /// Grows, relaxes and starts again until all is full or the time is over.
+    fn fill(
+        &self,
+        arrangement: &mut Arrangement,
+        ground: &Ground,
+        example: &Analysis,
+        (rules, sum): (&Rules, &mut Sum),
+        progress: &mut dyn Progress,
+    ) {
+        const ASK_EVERY: usize = 64;
+        const FIRST: usize = 48;
+        let mut next = FIRST;
+        let mut holes = if ground.middles.is_some() { holes(ground, example) } else { Vec::new() };
+        loop {
+            let done = arrangement.grown.len() as f64 / rules.most as f64;
+            if !progress.step("grow", done) {
+                sum.is_late = true;
+                break;
+            }
+            let goes_on = arrangement.grow(ASK_EVERY);
+            if self.params.relax && arrangement.grown.len() >= next {
+                next = arrangement.grown.len() * 5 / 4 + FIRST;
+                progress.step("relax", done);
+                relaxed(arrangement, ground, example);
+            }
+            if goes_on {
+                continue;
+            }
+            if arrangement.grown.len() >= rules.most {
+                break;
+            }
+            // Somewhere that nothing has come to.
+            let place = loop {
+                match holes.pop() {
+                    Some(at) if arrangement.is_empty_at(at, example.mean) => break Some(at),
+                    Some(_) => {}
+                    None => break None,
+                }
+            };
+            match place {
+                Some(at) => arrangement.start(at),
+                None => break,
+            }
+        }
+        if self.params.relax {
+            progress.step("relax", 1.0);
+            let fixed = relaxed(arrangement, ground, example);
+            let (objects, grown) = (&mut arrangement.objects, &mut arrangement.grown);
+            relax::part(objects, grown, &fixed, example, ground.bounds);
+        }
+    }
+}
+
+/// Places all over the ground, to be looked at when growth has come to an end; the first come last.
+fn holes(ground: &Ground, example: &Analysis) -> Vec<Point> {
+    let step = 1.2 * example.mean;
+    let bounds = ground.bounds;
+    let count = |side: f64| ((side / step).ceil() as usize).clamp(1, 2000);
+    let (columns, rows) = (count(bounds.width()), count(bounds.height()));
+    let place = |i: usize| {
+        let (x, y) = ((i % columns) as f64 + 0.5, (i / columns) as f64 + 0.5);
+        Point::new(
+            bounds.x0 + x / columns as f64 * bounds.width(),
+            bounds.y0 + y / rows as f64 * bounds.height(),
+        )
+    };
+    (0..columns * rows).rev().map(place).filter(|&at| ground.allows(at)).collect()
+}
+
+/// Relaxes with the starts in their places, and what stands at a boundary (E-041).
+fn relaxed(arrangement: &mut Arrangement, ground: &Ground, example: &Analysis) -> Vec<bool> {
+    let mut fixed: Vec<bool> = arrangement
+        .objects
+        .iter()
+        .map(|object| object.is_gone || ground.is_at_boundary(object.at, 0.75 * example.mean))
+        .collect();
+    arrangement.starts.iter().for_each(|&start| fixed[start as usize] = true);
+    relax::relax(&mut arrangement.objects, &fixed);
+    arrangement.moved();
+    fixed
+}
