@@ -34,6 +34,10 @@ pub(super) struct Object {
     pub ring: Vec<(u32, Vec2)>,
     /// A seed that came to nothing.
     pub is_gone: bool,
+    /// A seed that will have its turn.
+    grows: bool,
+    /// How often it has let others go first.
+    waited: u32,
 }
 
 /// What the growth goes by.
@@ -105,6 +109,7 @@ impl<'a> Arrangement<'a> {
     pub fn start(&mut self, at: Point) {
         let seed = self.add(at, None);
         self.starts.push(seed);
+        self.objects[seed as usize].grows = true;
         self.heap.push(Reverse((Distance(0.0), seed)));
     }
 
@@ -122,6 +127,8 @@ impl<'a> Arrangement<'a> {
             edges: Vec::new(),
             ring: Vec::new(),
             is_gone: false,
+            grows: false,
+            waited: 0,
         });
         self.grid.insert(at, index);
         index
@@ -147,7 +154,11 @@ impl<'a> Arrangement<'a> {
             if object.is_gone || object.copy.is_some() {
                 continue;
             }
-            if let Some(later) = self.more_important(seed) {
+            // Whoever waited this often waits for somebody who will not come.
+            const PATIENCE: u32 = 100;
+            let waits = object.waited < PATIENCE;
+            if let Some(later) = self.more_important(seed).filter(|_| waits) {
+                self.objects[seed as usize].waited += 1;
                 // Behind the one that it waits for.
                 let behind = distance.max(later) * (1.0 + 1e-9) + 1e-9;
                 self.heap.push(Reverse((Distance(behind), seed)));
@@ -180,6 +191,7 @@ impl<'a> Arrangement<'a> {
             let it = &self.objects[other as usize];
             if !it.is_gone
                 && it.copy.is_none()
+                && it.grows
                 && self.rank(it.symbol) < own
                 && at.distance(object.at) < reach
             {
@@ -320,6 +332,7 @@ impl<'a> Arrangement<'a> {
     fn sow(&mut self, at: Point, symbol: Option<usize>) -> u32 {
         let new = self.add(at, symbol);
         if self.ground.allows(at) {
+            self.objects[new as usize].grows = true;
             let distance = self.distance(at);
             self.heap.push(Reverse((Distance(distance), new)));
         }

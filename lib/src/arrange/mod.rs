@@ -309,7 +309,7 @@ impl One<'_> {
             if self.params.relax && arrangement.grown.len() >= next {
                 next = arrangement.grown.len() * 5 / 4 + FIRST;
                 progress.step("relax", done);
-                relaxed(arrangement, ground, example);
+                relaxed(arrangement, ground, example, relax::FEW_STEPS);
             }
             if goes_on {
                 continue;
@@ -332,7 +332,7 @@ impl One<'_> {
         }
         if self.params.relax {
             progress.step("relax", 1.0);
-            let fixed = relaxed(arrangement, ground, example);
+            let fixed = relaxed(arrangement, ground, example, relax::STEPS);
             let (objects, grown) = (&mut arrangement.objects, &mut arrangement.grown);
             relax::part(objects, grown, &fixed, example, ground.bounds);
         }
@@ -356,14 +356,14 @@ fn holes(ground: &Ground, example: &Analysis) -> Vec<Point> {
 }
 
 /// Relaxes with the starts in their places, and what stands at a boundary (E-041).
-fn relaxed(arrangement: &mut Arrangement, ground: &Ground, example: &Analysis) -> Vec<bool> {
+fn relaxed(arrangement: &mut Arrangement, ground: &Ground, example: &Analysis, steps: usize) -> Vec<bool> {
     let mut fixed: Vec<bool> = arrangement
         .objects
         .iter()
         .map(|object| object.is_gone || ground.is_at_boundary(object.at, 0.75 * example.mean))
         .collect();
     arrangement.starts.iter().for_each(|&start| fixed[start as usize] = true);
-    relax::relax(&mut arrangement.objects, &fixed);
+    relax::relax(&mut arrangement.objects, &fixed, steps);
     arrangement.moved();
     fixed
 }

@@ -13,9 +13,11 @@ use super::grow::Object;
 use crate::geom::near::PointGrid;
 use kurbo::{Rect, Vec2};
 
-/// Steps at most, and the share of the first error that is left in the end.
-const STEPS: usize = 120;
-const LEFT: f64 = 1e-5;
+/// Steps at most: in the end, and on the way, where later ones will come to it again.
+pub(super) const STEPS: usize = 100;
+pub(super) const FEW_STEPS: usize = 16;
+/// The share of the first error that is left in the end.
+const LEFT: f64 = 1e-4;
 
 /// The terms of the sum: from, to, and how far the two are from where they should be.
 fn terms(objects: &[Object]) -> Vec<(u32, u32, Vec2)> {
@@ -50,7 +52,7 @@ pub(super) fn residual(objects: &[Object]) -> f64 {
 }
 
 /// Moves objects; `fixed` ones stay.
-pub(super) fn relax(objects: &mut [Object], fixed: &[bool]) {
+pub(super) fn relax(objects: &mut [Object], fixed: &[bool], steps: usize) {
     let n = objects.len();
     let terms = terms(objects);
     let mut degree = vec![0.0_f64; n];
@@ -73,7 +75,7 @@ pub(super) fn relax(objects: &mut [Object], fixed: &[bool]) {
     let mut rz = dot(&force, &z);
     let end = rz * LEFT * LEFT;
     let mut product = vec![Vec2::ZERO; n];
-    for _ in 0..STEPS {
+    for _ in 0..steps {
         if rz <= end || rz == 0.0 {
             break;
         }
