@@ -32,7 +32,7 @@ fn valid_examples_are_read_and_invalid_ones_refused() {
 
 #[test]
 fn every_role_has_its_examples() {
-    let reserved = [Role::Reference, Role::Rules];
+    let reserved = [Role::Rules];
     for role in Role::ALL {
         let name = role.name();
         if reserved.contains(&role) {

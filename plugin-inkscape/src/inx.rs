@@ -231,6 +231,13 @@ fn help(generator: &Generator) -> &'static [&'static str] {
             "A clone placed exactly: mark points as tacks and a line as guide, and use Extensions > Ornament > Tacks.",
             "Several groups may clone each other: mark each as form.",
         ],
+        "arrange" => &[
+            "Draw some elements as they should be arranged, about five rows of five, group them, and mark the group as reference (Extensions > Ornament > Mark as). Those in the middle are copied; those around them show how they stand.",
+            "Select a closed shape, or mark one as container, and press Apply: the example goes on over it.",
+            "Strokes marked as spray are filled as wide as they are; lines marked as boundary stop growth; a dot marked as seed is where it starts; with the flow, elements turn as guides do.",
+            "Elements that stand for the same thing are clones of each other, look the same, or have one name as rinceau:symbol.",
+            "Elements are clones: change one in the layer's symbols, and all follow.",
+        ],
         _ => &[],
     }
 }

@@ -120,3 +120,21 @@ fn every_form() {
     }
     insta::assert_snapshot!(table);
 }
+
+#[test]
+fn every_arrangement() {
+    let mut table = String::new();
+    for path in samples_of("arrange") {
+        let (document, artwork) = drawn("arrange", std::fs::read(&path).unwrap(), &[]);
+        let count = |name: &str| artwork.counts[name];
+        table += &format!(
+            "{:16} {:5} elements of {:5} grown, rings differ by {:.3}, {:016x}\n",
+            path.file_stem().unwrap().to_string_lossy(),
+            count("elements"),
+            count("grown"),
+            count("residual"),
+            fingerprint(&document.to_bytes()),
+        );
+    }
+    insta::assert_snapshot!(table);
+}

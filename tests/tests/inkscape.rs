@@ -176,6 +176,30 @@ fn a_motif_and_its_clone_repeat_and_repeat_anew() {
     assert_eq!(rest(&twice), rest(&cloned));
 }
 
+/// An example marked and continued over a selected shape; then the shape is made wider, and all is
+/// updated.
+#[test]
+fn an_example_goes_on_and_follows_its_shape() {
+    let user = User::new();
+    let mut example = String::new();
+    for (row, column) in (0..6).flat_map(|row| (0..5).map(move |column| (row, column))) {
+        let (x, y) = (8 * column + 4 * (row % 2), 4 * row);
+        example += &format!("<rect id=\"b{row}-{column}\" x=\"{x}\" y=\"{y}\" width=\"7\" height=\"3\"/>");
+    }
+    let plain = svg(&format!(
+        "<g id=\"bricks\">{example}</g>\n<rect id=\"wall\" x=\"60\" y=\"40\" width=\"60\" height=\"100\" style=\"fill:none\"/>"
+    ));
+    let marked = user.edit(&plain, "select-by-id:bricks;org.rinceau.mark-reference.noprefs");
+    let once = user.edit(&marked, "select-by-id:wall;org.rinceau.arrange.noprefs");
+    assert_eq!(rest(&once), rest(&marked));
+    let count = |text: &str| elements(layers(&parse(text))[0]).len();
+    assert!(count(&once) > 80, "{}", count(&once));
+    let wider = once.replacen("width=\"60\"", "width=\"120\"", 1);
+    let updated = user.edit(&wider, "org.rinceau.update.noprefs");
+    assert_eq!(layers(&parse(&updated)).len(), 1);
+    assert!(count(&updated) > 3 * count(&once) / 2, "{} after {}", count(&updated), count(&once));
+}
+
 /// A tack, a guide and a clone, in one session.
 #[test]
 fn a_clone_is_dragged_about_a_tack() {
