@@ -269,11 +269,10 @@ def gable(sample, across, down, joint):
             if (x - left - 0.5 * across * (row % 2)) % across > 1:
                 stones.append(block(x if way > 0 else x - across / 2, y, across / 2, down, joint))
     for row in range(17, len(edges), 2):
-        edge, y = edges[row], base - down * (row + 1)
+        edge, top = edges[row], base - down * (row + 1)
         inner = edges[row + 1] if row + 1 < len(edges) else middle
-        for x0, x1 in [(edge, inner), (left + right - inner, left + right - edge)]:
-            if x1 > x0:
-                stones.append(rect(x0 - 3, y - 7, x1 - x0 + 3 + (x1 == middle) * 0, 7, 1, fill=STONE))
+        for x0, x1 in [(edge - 3, inner - 1), (left + right - inner + 1, left + right - edge + 3)]:
+            stones.append(rect(x0, top - 7, x1 - x0, 7, 1, fill=STONE))
     sample.fixed("stones", *stones, *opening(middle, half, lintel, sill, down))
     sample.seed(left + across / 2 + 2 * across, base - down / 2)
 
@@ -295,12 +294,14 @@ def opening(middle, half, top, sill, down):
     r = half - 12
     spring = top + 12 + r
     x0, x1 = number(middle - r), number(middle + r)
-    pane = f"M{x0},{number(sill - 6)} V{number(spring)} A{number(r)},{number(r)} 0 0 1 {x1},{number(spring)} V{number(sill - 6)} Z"
+    pane = (f"M{x0},{number(sill - 6)} V{number(spring)} A{number(r)},{number(r)} 0 0 1 "
+            f"{x1},{number(spring)} V{number(sill - 6)} Z")
     bars = (f"M{number(middle)},{number(top + 12)} V{number(sill - 6)} M{x0},{number(spring)} H{x1} "
             f"M{x0},{number((spring + sill) / 2)} H{x1}")
     return [path(rectangle(middle - half + 1, top + 1, middle + half - 1, sill - 1), fill=STONE),
             path(pane, fill=LAGOON[0]), path(bars, fill="none", stroke=STONE, stroke_width=4),
-            rect(middle - half - 8, sill - 6, 2 * half + 16, 6, 1, fill=STONE)]
+            path(f"M{number(middle - half + 1)},{number(sill - 6)} H{number(middle + half - 1)}", fill="none",
+                 stroke=mix(STONE, EMBER[0], 0.25), stroke_width=1)]
 
 
 # Near-regular: pebbles (8b)
@@ -315,14 +316,14 @@ def pebbles():
     places = [(across * (column + 0.5 * (row % 2)) + 11 + rng.uniform(-0.8, 0.8),
                down * row + 10 + rng.uniform(-0.8, 0.8)) for row in range(9) for column in range(7)]
     tone = in_turn(rng, tones, places, 1.15 * across)
-    # A few warm ones, far from each other.
-    for index in (16, 31, 40):
+    # Two warm ones, far from each other.
+    for index in (31, 37):
         tone[index] = LAGOON[2]
-    sample.example([named("stone", path(stone(rng, x, y, 20.5, 17), fill=t)) for (x, y), t in zip(places, tone)])
-    sample.container("M222,480 C222,400 260,330 350,262 C430,202 470,140 462,20 L676,20 C690,180 640,270 540,340 "
-                     "C470,388 440,420 436,480 Z", fill="#f0e6cf", stroke="none", mode="flow", edge="middle",
+    sample.example([named("stone", path(stone(rng, x, y, 19, 15.8), fill=t)) for (x, y), t in zip(places, tone)])
+    sample.container("M214,520 C216,410 270,330 352,266 C430,204 460,120 456,-20 L682,-20 C690,160 646,262 552,336 "
+                     "C478,394 444,440 442,520 Z", fill="#f0e6cf", stroke="none", mode="flow", edge="middle",
                      vary_size=0.06, vary_turn=8, output="paths", vary_tone=0.08)
-    sample.guides("M330,480 C330,410 370,360 445,301 C540,230 574,150 569,20")
+    sample.guides("M328,520 C330,430 370,366 450,301 C536,232 574,140 569,-20")
     sample.write()
 
 
@@ -340,10 +341,10 @@ def confetti():
     sample = Sample("confetti", "Confetti",
                     "Dots of three sizes and tones, without order but evenly spread. After Figure 8c of "
                     "Ijiri et al. 2008.")
-    kinds = [("large", 8, 24, 29), ("middle", 5.5, 40, 19), ("small", 3.2, 150, 0)]
+    kinds = [("large", 7.2, 22, 30), ("middle", 5.4, 34, 22), ("small", 3.6, 150, 0)]
     paint = {"large": EMBER[0], "middle": EMBER[1], "small": EMBER[2]}
     radius = {kind[0]: kind[1] for kind in kinds}
-    spots = even(rng, 176, 190, kinds, 2.6)
+    spots = even(rng, 176, 200, kinds, 4)
     sample.example([named(kind, circle(x, y, radius[kind], fill=paint[kind])) for x, y, kind in spots], x=14)
     sample.container(heart(450, 250, 222), edge="inside")
     sample.write()
@@ -361,14 +362,14 @@ def linked_stones():
     elements = []
     for row in range(12):
         for column in range(10):
-            x = across * (column + 0.5 * (row % 2)) + 9 + rng.uniform(-1.6, 1.6)
-            y = down * row + 12 + 7 * math.sin(0.75 * column) + rng.uniform(-1.6, 1.6)
+            x = across * (column + 0.5 * (row % 2)) + 9 + rng.uniform(-1, 1)
+            y = down * row + 12 + 4.5 * math.sin(0.7 * column) + rng.uniform(-0.8, 0.8)
             dark = row % 3 == 1
             tone = rng.choice((DUSK[0], mix(DUSK[0], DUSK[1], 0.35))) if dark else rng.choice(pale)
             elements.append(named("dark" if dark else "pale",
                                   path(stone(rng, x, y, 15.2, 13.6, power=2.3), fill=tone)))
     sample.example(elements, x=14)
-    sample.container("M450,32 A218,218 0 1 1 449.9,32 Z", mode="rotate", edge="middle", stroke="none")
+    sample.container("M450,32 A218,218 0 1 1 449.9,32 Z", mode="rotate", edge="inside", stroke="none")
     sample.write()
 
 
@@ -410,15 +411,15 @@ def fish(sample):
     head = ("M334,155.500 C356,190 356,330 334,364.500 C286,346 240,300 222,268 C214,262 214,256 222,252 "
             "C240,220 286,174 334,155.500 Z")
     tail = "M628,229 C650,220 668,186 692,160 C680,214 680,306 692,360 C668,334 650,300 628,291 Z"
-    back = "M396,130 C430,84 510,66 560,88 C544,112 548,138 566,184 C530,140 470,116 396,130 Z"
-    belly = "M430,397 C450,430 490,446 520,440 C512,420 516,404 528,378 C500,392 466,400 430,397 Z"
+    back = "M396,130 C430,84 510,66 560,88 C544,112 548,138 566,184 C530,160 470,150 396,134 Z"
+    belly = "M430,397 C450,430 490,446 520,440 C512,420 516,404 528,372 C500,376 466,380 430,390 Z"
     for d in (tail, back, belly):
         sample.add(path(d, fill=LAGOON[0]))
     rays = ("M638,240 L680,200 M642,252 L680,236 M642,268 L680,284 M638,280 L680,320 "
             "M440,114 L470,88 M476,114 L506,82 M510,124 L536,86 M462,404 L478,430 M490,400 L502,436")
     sample.add(path(rays, fill="none", stroke=LAGOON[1], stroke_width=1.5, stroke_linecap="round"))
     sample.container(body, fill=LAGOON[0], stroke="none", mode="flow", edge="inside")
-    sample.guides("M330,176 C420,128 530,146 630,238", "M340,260 H630", "M330,344 C420,392 530,374 630,282")
+    sample.guides("M334,180 C420,134 520,150 600,226", "M340,260 H628", "M334,340 C420,386 520,370 600,294")
     sample.add(path(head, fill=LAGOON[0]))
     sample.add(path("M318,180 C332,220 332,300 318,340", fill="none", stroke=LAGOON[1], stroke_width=2,
                     stroke_linecap="round"))
@@ -449,12 +450,13 @@ def feathers():
     # Painted aslant, since the wing's feathers point to the right and downwards.
     places.sort(key=lambda p: -(p[0] + 0.7 * p[1]))
     sample.example([feather(x + 28, y + 12, rng.choice(tones)) for x, y in places])
-    sample.container("M240,300 C214,190 250,84 350,50 C460,14 580,60 640,180 C662,226 676,290 684,380 "
-                     "C660,386 640,400 626,424 C606,416 590,420 570,440 C550,428 530,430 506,446 C480,432 456,432 430,444 "
-                     "C404,428 380,426 352,434 C300,410 256,366 240,300 Z",
+    arm = "M244,350 C218,200 320,52 440,44 C560,36 650,120 690,262 C630,150 550,96 448,96 C350,96 276,180 244,350 Z"
+    sample.add(path(arm, fill=mix(DUSK[0], DUSK[1], 0.25)))
+    sample.container("M250,300 C248,190 334,84 440,78 C546,74 630,150 676,262 C684,282 690,300 686,318 "
+                     "C600,330 520,364 450,416 C400,444 330,452 276,440 C254,400 248,350 250,300 Z",
                      stroke="none", mode="flow", edge="middle")
-    sample.guides("M262,130 C290,200 310,300 370,420", "M330,70 C390,150 430,270 470,430",
-                  "M420,56 C500,130 550,260 580,420", "M500,60 C590,120 640,240 664,380")
+    sample.guides("M262,160 C268,250 280,340 312,440", "M330,84 C356,190 392,300 440,410",
+                  "M430,52 C470,150 510,250 560,350", "M530,66 C580,150 620,240 650,320", "M620,140 C650,190 672,250 684,310")
     sample.write()
 
 
@@ -465,18 +467,19 @@ def blocks():
     sample = Sample("blocks", "Paving with dividing lines",
                     "Blocks lie along the dividing lines; growth stops at these, and starts anew behind "
                     "them. After Figure 1 (e) and (f) of Ijiri et al. 2008.")
-    across, down, joint = 21, 16, 2
-    tones = (MEADOW[1], mix(MEADOW[1], MEADOW[0], 0.5), mix(MEADOW[1], MEADOW[2], 0.5), MEADOW[2],
+    across, down, joint = 21, 16, 2.6
+    tones = (MEADOW[1], mix(MEADOW[1], MEADOW[0], 0.4), mix(MEADOW[1], MEADOW[2], 0.45), MEADOW[0],
              mix(MEADOW[1], PAPER, 0.3))
     places = [(across * (column + 0.5 * (row % 2)), down * row) for row in range(11) for column in range(8 - row % 2)]
     tone = in_turn(rng, tones, places, 1.2 * across)
     sample.example([named("block", rect(x, y, across - joint, down - joint, 3, fill=t))
                     for (x, y), t in zip(places, tone)], x=14)
-    lines = ("M226,350 C320,350 380,300 430,230 C480,160 560,130 676,130",
-             "M420,474 C450,400 540,330 676,320")
+    wave = "M220,{} C310,{} 380,{} 451,{} C522,{} 592,{} 682,{}"
+    waves = [wave.format(*(y + dy for dy in (0, -40, -40, -18, 4, 4, -36))) for y in (46, 196, 346, 496)]
     sample.container("M226,26 H676 V474 H226 Z", edge="inside", mode="flow", fill="#f4ebd6")
-    sample.boundaries(*lines)
-    sample.guides(*lines)
+    sample.boundaries(*waves[1:3])
+    # The outer ones keep rows level at the edges of the panel.
+    sample.guides(*waves)
     sample.write()
 
 
@@ -491,10 +494,10 @@ def euro():
     places = lattice(17, 13, 8.5, 9.5)
     tone = in_turn(rng, tones, places, 11)
     sample.example([small_leaf(x + 12, y + 8, t) for (x, y), t in zip(places, tone)])
-    letters = ["M322,150 C262,140 236,190 236,240 C236,300 262,344 326,330 M240,240 H312",
-               "M362,190 V290 C362,350 440,350 440,290 V190",
-               "M484,340 V240 C484,206 506,188 540,196",
-               "M616,190 C560,190 560,336 616,336 C672,336 672,190 616,190 Z"]
+    letters = ["M314,150 C262,144 238,190 238,240 C238,296 262,338 318,330 M240,240 H306",
+               "M372,196 V288 C372,346 444,346 444,288 V196",
+               "M498,338 V240 C498,208 514,192 540,194",
+               "M626,192 C574,192 574,336 626,336 C678,336 678,192 626,192 Z"]
     sample.sprays(42, *letters)
     sample.guides(*letters)
     sample.write()
@@ -526,15 +529,15 @@ def fillers():
     rng = random.Random(7)
     sample = Sample("fillers", "Flowers, leaves and dots",
                     "Flowers go first, then leaves; dots fill the room between them.")
-    kinds = [("flower", 14, 12, 44), ("leaf", 8.5, 30, 21), ("dot", 2.4, 160, 0)]
+    kinds = [("flower", 12.5, 13, 42), ("leaf", 8.5, 30, 22), ("dot", 2.6, 160, 0)]
     elements = []
-    for x, y, kind in even(rng, 178, 220, kinds, 2.6):
+    for x, y, kind in even(rng, 178, 220, kinds, 4.6):
         if kind == "flower":
-            shapes = flower(x, y, 14, EMBER[1], EMBER[2], 6, rng.uniform(0, 60))
+            shapes = flower(x, y, 12.5, EMBER[1], EMBER[2], 6, rng.uniform(0, 60))
         elif kind == "leaf":
             shapes = leaf(x, y, 22, MEADOW[0], rng.uniform(0, 360))
         else:
-            shapes = [circle(x, y, 2.4, fill=EMBER[2])]
+            shapes = [circle(x, y, 2.6, fill=EMBER[2])]
         elements.append(named(kind, *shapes))
     sample.example(elements, x=14)
     sample.container("M396,24 H504 C502,50 488,64 486,84 C490,124 650,160 650,306 C650,400 570,450 516,476 H384 "
@@ -548,32 +551,49 @@ def fillers():
 def meadow():
     rng = random.Random(21)
     sample = Sample("meadow", "Meadow print",
-                    "Poppies, asters, leaves and buds strewn over a kimono; collar and sash are kept clear.")
-    kinds = [("poppy", 11.5, 14, 40), ("aster", 9.5, 18, 30), ("leaf", 7.5, 40, 18), ("bud", 2.8, 150, 0)]
+                    "A half-drop repeat of poppies, asters, sprigs and buds, drawn with a free hand, over a "
+                    "kimono; collar and sash are kept clear.")
+    across, down = 24.5, 20
     elements = []
-    for x, y, kind in even(rng, 180, 230, kinds, 2.8):
-        if kind == "poppy":
-            shapes = flower(x, y, 11.5, EMBER[1], DUSK[0], 5, rng.uniform(0, 72))
-        elif kind == "aster":
-            shapes = flower(x, y, 9.5, DUSK[1], EMBER[2], 8, rng.uniform(0, 45))
-        elif kind == "leaf":
-            shapes = leaf(x, y, 19, MEADOW[1], rng.uniform(0, 360))
-        else:
-            shapes = [circle(x, y, 2.8, fill=EMBER[2])]
-        elements.append(named(kind, *shapes))
-    sample.example(elements, x=12)
+    for row in range(11):
+        for column in range(7):
+            x = across * (column + 0.5 * (row % 2)) + 12 + rng.uniform(-1.2, 1.2)
+            y = down * row + 12 + rng.uniform(-1.2, 1.2)
+            elements.append(meadow_flower(rng, x, y, 2 * (row % 2) + (column + row // 2) % 2))
+    sample.example(elements, x=8)
     kimono(sample)
     sample.write()
 
 
+def meadow_flower(rng, x, y, kind):
+    if kind == 0:
+        return named("poppy", *flower(x, y, 11.5, EMBER[1], DUSK[0], 5, rng.uniform(0, 72)))
+    if kind == 1:
+        return named("sprig", *sprig(x, y, MEADOW[1], rng.uniform(-130, -50)))
+    if kind == 2:
+        return named("aster", *flower(x, y, 9.5, DUSK[1], EMBER[2], 8, rng.uniform(0, 45)))
+    return named("bud", *(circle(x + 4 * math.sin(a), y - 4 * math.cos(a), 2.3, fill=EMBER[2])
+                          for a in (0, 2 * math.pi / 3, -2 * math.pi / 3)))
+
+
+def sprig(x, y, tone, turn):
+    """Three leaves on a stalk."""
+    place = at(x, y, turn)
+    blade = "M0,0 C2,-5 8,-5 11,0 C8,5 2,5 0,0 Z"
+    leaves = [path(placed(blade, at(x - 1 * math.cos(math.radians(turn)), y - 1 * math.sin(math.radians(turn)),
+                                    turn + lean, 0.95)), fill=tone) for lean in (-62, 0, 62)]
+    return leaves + [path(placed("M-9,0 L2,0", place), fill="none", stroke=tone, stroke_width=1.4,
+                          stroke_linecap="round")]
+
+
 def kimono(sample):
-    sample.container("M398,30 H502 L690,62 V270 C660,276 620,276 576,268 V478 H324 V268 C280,276 240,276 210,270 V62 Z",
-                     fill=PAPER, gap=1.5)
-    collar = "M398,30 L450,250 L502,30 L484,26 L450,180 L416,26 Z"
-    sash = "M322,250 H578 V302 H322 Z"
-    knots = "M322,262 H578 M322,290 H578"
+    sample.container("M396,32 L450,200 L504,32 L690,62 V270 C660,276 620,276 576,268 V478 H324 V268 "
+                     "C280,276 240,276 210,270 V62 Z", fill=PAPER)
+    collar = "M390,26 L450,262 L510,26 L490,22 L450,176 L410,22 Z"
+    sash = rectangle(320, 250, 580, 300)
+    cords = "M320,261 H580 M320,289 H580"
     sample.fixed("collar", path(collar, fill=DUSK[0]))
-    sample.fixed("sash", path(sash, fill=DUSK[0]), path(knots, fill="none", stroke=EMBER[2], stroke_width=2))
+    sample.fixed("sash", path(sash, fill=DUSK[0]), path(cords, fill="none", stroke=EMBER[2], stroke_width=2))
 
 
 def main():
