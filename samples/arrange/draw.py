@@ -337,7 +337,7 @@ def heart(x, y, size):
 
 
 def confetti():
-    rng = random.Random(12)
+    rng = random.Random(8)
     sample = Sample("confetti", "Confetti",
                     "Dots of three sizes and tones, without order but evenly spread. After Figure 8c of "
                     "Ijiri et al. 2008.")
@@ -408,23 +408,23 @@ def scales():
 def fish(sample):
     body = ("M330,158 C420,104 530,122 594,208 C604,222 614,228 630,230 L630,290 C614,292 604,298 594,312 "
             "C530,398 420,416 330,362 C352,330 352,190 330,158 Z")
-    head = ("M334,155.500 C356,190 356,330 334,364.500 C286,346 240,300 222,268 C214,262 214,256 222,252 "
-            "C240,220 286,174 334,155.500 Z")
+    head = ("M334,155.500 C356,190 356,330 334,364.500 C286,346 244,308 220,274 C212,262 212,256 220,246 "
+            "C244,212 286,174 334,155.500 Z")
     tail = "M628,229 C650,220 668,186 692,160 C680,214 680,306 692,360 C668,334 650,300 628,291 Z"
-    back = "M396,130 C430,84 510,66 560,88 C544,112 548,138 566,184 C530,160 470,150 396,134 Z"
-    belly = "M430,397 C450,430 490,446 520,440 C512,420 516,404 528,372 C500,376 466,380 430,390 Z"
+    back = "M376,146 C420,84 510,66 560,88 C544,112 548,138 566,184 C530,170 440,160 376,146 Z"
+    belly = "M408,382 C446,428 490,446 520,440 C512,420 516,404 528,372 C500,370 440,370 408,382 Z"
     for d in (tail, back, belly):
         sample.add(path(d, fill=LAGOON[0]))
     rays = ("M638,240 L680,200 M642,252 L680,236 M642,268 L680,284 M638,280 L680,320 "
             "M440,114 L470,88 M476,114 L506,82 M510,124 L536,86 M462,404 L478,430 M490,400 L502,436")
     sample.add(path(rays, fill="none", stroke=LAGOON[1], stroke_width=1.5, stroke_linecap="round"))
     sample.container(body, fill=LAGOON[0], stroke="none", mode="flow", edge="inside")
-    sample.guides("M334,180 C420,134 520,150 600,226", "M340,260 H628", "M334,340 C420,386 520,370 600,294")
+    sample.guides("M334,180 C420,134 520,150 590,216", "M340,260 H606", "M334,340 C420,386 520,370 590,304")
     sample.add(path(head, fill=LAGOON[0]))
     sample.add(path("M318,180 C332,220 332,300 318,340", fill="none", stroke=LAGOON[1], stroke_width=2,
                     stroke_linecap="round"))
     sample.add(circle(282, 234, 12, fill=PAPER) + circle(280, 234, 6, fill=LAGOON[0]))
-    sample.add(path("M219,264 C232,272 244,274 256,272", fill="none", stroke=LAGOON[1], stroke_width=2,
+    sample.add(path("M216,262 C230,272 244,274 256,272", fill="none", stroke=LAGOON[1], stroke_width=2,
                     stroke_linecap="round"))
 
 
@@ -450,13 +450,15 @@ def feathers():
     # Painted aslant, since the wing's feathers point to the right and downwards.
     places.sort(key=lambda p: -(p[0] + 0.7 * p[1]))
     sample.example([feather(x + 28, y + 12, rng.choice(tones)) for x, y in places])
-    arm = "M244,350 C218,200 320,52 440,44 C560,36 650,120 690,262 C630,150 550,96 448,96 C350,96 276,180 244,350 Z"
+    arm = ("M244,350 C218,200 320,52 440,44 C560,36 650,120 690,262 "
+           "C612,190 540,124 448,124 C360,124 292,200 244,350 Z")
     sample.add(path(arm, fill=mix(DUSK[0], DUSK[1], 0.25)))
     sample.container("M250,300 C248,190 334,84 440,78 C546,74 630,150 676,262 C684,282 690,300 686,318 "
                      "C600,330 520,364 450,416 C400,444 330,452 276,440 C254,400 248,350 250,300 Z",
                      stroke="none", mode="flow", edge="middle")
     sample.guides("M262,160 C268,250 280,340 312,440", "M330,84 C356,190 392,300 440,410",
-                  "M430,52 C470,150 510,250 560,350", "M530,66 C580,150 620,240 650,320", "M620,140 C650,190 672,250 684,310")
+                  "M430,52 C470,150 510,250 560,350", "M530,66 C580,150 620,240 650,320",
+                  "M620,140 C650,190 672,250 684,310")
     sample.write()
 
 
@@ -468,8 +470,8 @@ def blocks():
                     "Blocks lie along the dividing lines; growth stops at these, and starts anew behind "
                     "them. After Figure 1 (e) and (f) of Ijiri et al. 2008.")
     across, down, joint = 21, 16, 2.6
-    tones = (MEADOW[1], mix(MEADOW[1], MEADOW[0], 0.4), mix(MEADOW[1], MEADOW[2], 0.45), MEADOW[0],
-             mix(MEADOW[1], PAPER, 0.3))
+    tones = (MEADOW[1], mix(MEADOW[1], MEADOW[0], 0.4), mix(MEADOW[1], MEADOW[2], 0.45),
+             mix(MEADOW[1], PAPER, 0.35))
     places = [(across * (column + 0.5 * (row % 2)), down * row) for row in range(11) for column in range(8 - row % 2)]
     tone = in_turn(rng, tones, places, 1.2 * across)
     sample.example([named("block", rect(x, y, across - joint, down - joint, 3, fill=t))
@@ -526,7 +528,7 @@ def leaf(x, y, length, tone, turn=0):
 
 
 def fillers():
-    rng = random.Random(7)
+    rng = random.Random(15)
     sample = Sample("fillers", "Flowers, leaves and dots",
                     "Flowers go first, then leaves; dots fill the room between them.")
     kinds = [("flower", 12.5, 13, 42), ("leaf", 8.5, 30, 22), ("dot", 2.6, 160, 0)]

@@ -8,6 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Triangles with a wider angle are skewed (E-006).
 const SKEWED: f64 = 2.0 * std::f64::consts::FRAC_PI_3;
+/// Elements that are farther from each other than this share of their sizes are not too near.
+const ROOM: f64 = 1.12;
 /// Elements of an example at most: each place is compared with all of them.
 pub(super) const MOST_EXAMPLES: usize = 2000;
 
@@ -41,8 +43,9 @@ pub(super) struct Analysis {
     /// Mean and least length of edges.
     pub mean: f64,
     pub least: f64,
-    /// Least distance between two of each pair of symbols.
+    /// Least distance between two of each pair of symbols, and the largest of these.
     apart: Vec<f64>,
+    pub reach: f64,
 }
 
 impl Analysis {
@@ -122,11 +125,15 @@ impl Analysis {
         for (i, a) in elements.iter().enumerate() {
             for b in &elements[..i] {
                 for (s, t) in [(a.symbol, b.symbol), (b.symbol, a.symbol)] {
-                    apart[s * n + t] = apart[s * n + t].min(a.at.distance(b.at));
+                    // Rare ones may be far from each other in the example without meaning it.
+                    let room = ROOM * 0.5 * (a.bounds.size().max_side() + b.bounds.size().max_side());
+                    apart[s * n + t] = apart[s * n + t].min(a.at.distance(b.at)).min(room);
                 }
             }
         }
-        Ok(Analysis { elements, symbols, mean, least, apart })
+        apart.iter_mut().filter(|least| !least.is_finite()).for_each(|least| *least = 0.0);
+        let reach = apart.iter().copied().fold(mean, f64::max);
+        Ok(Analysis { elements, symbols, mean, least, apart, reach })
     }
 
     /// Least distance between two symbols in the example.

@@ -9,6 +9,7 @@ use super::example::Analysis;
 use super::ground::Ground;
 use super::ring::{Around, Match, Turn, Weights, best, rotated, sort_around};
 use crate::geom::near::{PointGrid, crosses};
+use crate::rng::Rng;
 use kurbo::{Point, Vec2};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -86,12 +87,15 @@ pub(super) struct Arrangement<'a> {
     pub starts: Vec<u32>,
     /// Objects that are elements, in the order in which they grew.
     pub grown: Vec<u32>,
+    /// How often each element of the example was copied, and what chance adds to that.
+    uses: Vec<f64>,
     grid: PointGrid,
     heap: BinaryHeap<Reverse<(Distance, u32)>>,
 }
 
 impl<'a> Arrangement<'a> {
-    pub fn new(example: &'a Analysis, ground: &'a Ground, rules: &'a Rules) -> Self {
+    pub fn new(example: &'a Analysis, ground: &'a Ground, rules: &'a Rules, rng: &mut Rng) -> Self {
+        let uses = example.elements.iter().map(|_| rng.unit()).collect();
         let grid = PointGrid::new(ground.bounds, example.mean);
         Arrangement {
             example,
@@ -100,6 +104,7 @@ impl<'a> Arrangement<'a> {
             objects: Vec::new(),
             starts: Vec::new(),
             grown: Vec::new(),
+            uses,
             grid,
             heap: BinaryHeap::new(),
         }
@@ -217,6 +222,7 @@ impl<'a> Arrangement<'a> {
             object.symbol = Some(element.symbol);
         }
         self.grown.push(seed);
+        self.uses[found.element] += 1.0;
         let m = element.ring.len();
         let offset = |i: usize| rotated(element.ring[(found.shift + i) % m].offset, found.turn);
         // The ring counter-clockwise: neighbours there are, then new ones.
@@ -273,7 +279,7 @@ impl<'a> Arrangement<'a> {
                 |a: &(u32, Around), b: &(u32, Around)| self.objects[a.0 as usize].edges.contains(&b.0);
             sort_around(&mut neighbours, |(_, around)| around.offset, are_linked);
             let around: Vec<Around> = neighbours.iter().map(|(_, around)| *around).collect();
-            if let Some(found) = best(self.example, &around, symbol, rules) {
+            if let Some(found) = best(self.example, &around, symbol, (rules, &self.uses)) {
                 return Some((neighbours.into_iter().map(|(other, _)| other).collect(), found));
             }
             if symbol.take().is_some() {
@@ -344,10 +350,10 @@ impl<'a> Arrangement<'a> {
     fn is_crowded(&self, seed: u32, at: Point, symbol: usize) -> bool {
         const CROWDED: f64 = 0.8;
         let mut found = false;
-        self.grid.visit(at, self.example.mean, |p, other| {
+        self.grid.visit(at, self.example.reach, |p, other| {
             let it = &self.objects[other as usize];
             let apart = it.symbol.map_or(self.example.least, |own| self.example.apart(symbol, own));
-            found = other != seed && !it.is_gone && p.distance(at) < CROWDED * apart.min(self.example.mean);
+            found = other != seed && !it.is_gone && p.distance(at) < CROWDED * apart;
             !found
         });
         found

@@ -177,7 +177,7 @@ impl One<'_> {
         let reference = &self.scene.references[self.reference];
         let rules = self.rules(example, reference, sum)?;
         let ground = self.ground(example, &rules)?;
-        let mut arrangement = Arrangement::new(example, &ground, &rules);
+        let mut arrangement = Arrangement::new(example, &ground, &rules, &mut rng.fork());
         let starts: Vec<Point> =
             self.scene.seeds.iter().map(|seed| seed.at).filter(|&at| ground.allows(at)).collect();
         match starts.is_empty() {

@@ -127,7 +127,7 @@ pub(super) fn part(
     bounds: Rect,
 ) {
     let apart = |a: &Object, b: &Object| match (a.symbol, b.symbol) {
-        (Some(a), Some(b)) => example.apart(a, b).min(example.mean),
+        (Some(a), Some(b)) => example.apart(a, b),
         _ => 0.0,
     };
     for round in 0..=ROUNDS {
@@ -139,7 +139,7 @@ pub(super) fn part(
             let own = &objects[i as usize];
             let mut by = Vec2::ZERO;
             let mut is_crowded = false;
-            grid.visit(own.at, example.mean, |at, j| {
+            grid.visit(own.at, example.reach, |at, j| {
                 let other = &objects[j as usize];
                 let distance = own.at.distance(at);
                 let least = apart(own, other);
