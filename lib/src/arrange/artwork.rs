@@ -151,8 +151,11 @@ impl Drawing {
 
 /// Points on the outline of an element, from its middle.
 fn hull(one: &Example, at: Point, mean: f64) -> Vec<Vec2> {
-    const MOST: usize = 64;
-    let lines = one.parts.iter().flat_map(|part| flatten(&(part.transform * part.path.clone()), 0.01 * mean));
+    /// So true are chords, in mean edges; what is between points may bulge by as much again.
+    const TOLERANCE: f64 = 0.002;
+    const MOST: usize = 200;
+    let lines =
+        one.parts.iter().flat_map(|part| flatten(&(part.transform * part.path.clone()), TOLERANCE * mean));
     let points: Vec<Point> = lines.flat_map(|line| line.points).collect();
     // Evenly many, and those that lie farthest out in eight directions.
     let step = points.len().div_ceil(MOST).max(1);
@@ -161,6 +164,9 @@ fn hull(one: &Example, at: Point, mean: f64) -> Vec<Vec2> {
         let along = |p: &&Point| way.dot(**p - at);
         hull.extend(points.iter().max_by(|a, b| along(a).total_cmp(&along(b))).map(|&p| p - at));
         hull.extend(points.iter().min_by(|a, b| along(a).total_cmp(&along(b))).map(|&p| p - at));
+    }
+    for v in &mut hull {
+        *v *= 1.0 + 3.0 * TOLERANCE * mean / v.hypot().max(TOLERANCE * mean);
     }
     hull
 }
