@@ -76,11 +76,19 @@ pub(crate) fn parent_transform(resolver: &Resolver, node: roxmltree::Node) -> ku
 
 /// From an object's own coordinates, its transform included, to the root's.
 fn to_root(resolver: &Resolver, node: roxmltree::Node) -> kurbo::Affine {
-    let units = crate::units::Units { viewport: resolver.view.size(), em: 16.0 };
     let mut chain: Vec<_> = node.ancestors().filter(|node| node.parent_element().is_some()).collect();
     chain.reverse();
-    chain
-        .into_iter()
-        .map(|node| resolver::own_transform(node, &units).unwrap_or_default())
-        .fold(kurbo::Affine::IDENTITY, |all, own| all * own)
+    let mut units = crate::units::Units { viewport: resolver.view.size(), em: 16.0 };
+    let mut full = kurbo::Affine::IDENTITY;
+    for node in chain {
+        full *= resolver::own_transform(node, &units).unwrap_or_default();
+        if let Some((fit, viewport)) = resolver::is_svg(&node, "svg")
+            .then(|| resolver::nested_viewport(node, &units, (None, None)))
+            .flatten()
+        {
+            full *= fit;
+            units.viewport = viewport;
+        }
+    }
+    full
 }

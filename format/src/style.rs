@@ -58,10 +58,10 @@ const LONGEST_VALUE: usize = 4096;
 /// Widths beyond this many user units are left out, as the coordinates would be.
 const WIDEST: f64 = 1e9;
 
-/// Red, green and blue of a CSS colour; `None` for anything else, such as a gradient.
+/// Red, green and blue of an opaque CSS colour; `None` for anything else, such as a gradient.
 pub fn rgb(colour: &str) -> Option<[u8; 3]> {
     let colour: svgtypes::Color = colour.trim().parse().ok()?;
-    Some([colour.red, colour.green, colour.blue])
+    (colour.alpha == 255).then_some([colour.red, colour.green, colour.blue])
 }
 
 /// The computed paint of an object: property names to values, without defaults.

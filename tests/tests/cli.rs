@@ -1019,6 +1019,23 @@ mod forms {
         assert_eq!(data.matches('M').count(), 2, "{data}");
     }
 
+    /// Lines are joined; a filled shape with a hole is none.
+    #[test]
+    fn keep_filled_shapes_where_lines_are_joined() {
+        let form = "<g class='rinceau-form'><path id='a' d='M0,0h40v40h-40z M10,10h20v20h-20z' fill-rule='evenodd'/><use href='#a' transform='translate(50 0) scale(.9)'/></g>";
+        for join in ["touching", "all"] {
+            let text = repeated(svg(form), &["--join", join, "--depth", "3"]);
+            let xml = parse(&text);
+            let data: Vec<&str> =
+                layers(&xml)[0].descendants().filter_map(|node| node.attribute("d")).collect();
+            assert_eq!(data.len(), 3);
+            assert!(
+                data.iter().all(|d| d.matches('M').count() == 2 && d.matches('Z').count() == 2),
+                "{data:?}"
+            );
+        }
+    }
+
     #[test]
     fn end_when_the_time_does() {
         let tree = "<g class='rinceau-form'><rect id='a' width='20' height='50'/><use href='#a' transform='translate(90 9) scale(.9)'/><use href='#a' transform='translate(9 90) scale(.9)'/></g>";

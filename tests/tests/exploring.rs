@@ -130,6 +130,15 @@ mod tacks {
         }
     }
 
+    /// Its own coordinates are not the root's.
+    #[test]
+    fn move_what_lies_in_a_drawing_within_the_drawing() {
+        let marks = "<circle class='rinceau-tack' cx='20' cy='150' r='1'/><circle class='rinceau-tack' cx='60' cy='150' r='1'/>";
+        let inner = "<svg x='3' y='4' width='50' height='50' viewBox='0 0 10 10'><rect id='a' width='5' height='5'/></svg>";
+        let after = tack(&svg(&format!("{inner}{marks}")), "half-turn", &["a"]);
+        assert_eq!(by_id(&parse(&after), "a").attribute("transform"), Some("matrix(-1 0 0 -1 14.8 58.4)"));
+    }
+
     #[test]
     fn that_say_nothing_are_refused() {
         let refusal = |text: &str, operation: &str, ids: &[&str]| {

@@ -745,7 +745,7 @@ mod forms {
     fn that_clones_cannot_show() {
         insta::assert_snapshot!(form(HALF).flag("output", "clones").flag("min-size", "1").refusal(), @"2:1: A chain of clones repeats every copy to the last generation, however small. Choose paths as result, or set the smallest copy to 0. [clones-of-one-size]");
         insta::assert_snapshot!(form(HALF).flag("output", "clones").flag("strokes", "fixed").refusal(), @"2:1: Clones keep neither strokes of one width nor joined lines. Choose paths as result, or let strokes scale and lines be. [paths-only]");
-        insta::assert_snapshot!(form(HALF).flag("output", "clones").flag("depth", "10001").refusal(), @"2:1: A chain of clones has at most 10000 generations. Draw fewer generations, or choose paths as result. [too-many-copies]");
+        insta::assert_snapshot!(form(HALF).flag("output", "clones").flag("depth", "301").refusal(), @"2:1: A chain of clones has at most 300 generations. Draw fewer generations, or choose paths as result. [too-many-copies]");
     }
 
     #[test]

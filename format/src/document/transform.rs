@@ -94,7 +94,10 @@ impl Document {
         // The attribute is applied about an origin, which stays as it is written.
         let origin = crate::read::transform_origin(node, &units).to_vec2();
         let written = Affine::translate(-origin) * moved * Affine::translate(origin);
-        if !written.is_finite() {
+        // So small that its decimals would be cut off.
+        const SMALLEST: f64 = 1e-6;
+        let size = written.as_coeffs()[..4].iter().fold(0.0_f64, |most, c| most.max(c.abs()));
+        if !written.is_finite() || size < SMALLEST {
             return refused(
                 "flat-layer",
                 "cannot be moved: a group around it is scaled to nothing",

@@ -45,8 +45,9 @@ const LARGEST: f64 = 1e4;
 const FIRST_LOOK: f64 = 50_000.0;
 /// Paths of one form at most, whatever is allowed: they would be a file of many gigabytes.
 const MOST_PATHS: f64 = 2e7;
-/// Generations of a chain of clones at most.
-const LONGEST_CHAIN: usize = 10_000;
+/// Generations of a chain of clones at most. Viewers follow a chain by recursion: at a thousand some
+/// run out of stack.
+const LONGEST_CHAIN: usize = 300;
 
 /// The forms of a scene that are drawn for their own sake.
 pub fn sources(scene: &Scene) -> Vec<&Source> {
@@ -130,6 +131,13 @@ impl Run<'_> {
         let reach = Reach { depth: params.depth, last: params.generations == "last" };
         let min_size = params.min_size.to_user(self.scene.px_per_unit);
         progress.step("count", 0.0);
+        if params.output == "clones" && reach.depth > LONGEST_CHAIN {
+            return Err(self.form.source.error(
+                "too-many-copies",
+                format!("A chain of clones has at most {LONGEST_CHAIN} generations"),
+                "Draw fewer generations, or choose paths as result",
+            ));
+        }
         if min_size == 0.0 {
             self.check_count(reach)?;
         } else if params.output == "clones" {
@@ -334,13 +342,6 @@ impl Run<'_> {
                 "Choose paths as result, or let strokes scale and lines be",
             ));
         }
-        if expansion.reach.depth > LONGEST_CHAIN {
-            return Err(self.form.source.error(
-                "too-many-copies",
-                format!("A chain of clones has at most {LONGEST_CHAIN} generations"),
-                "Draw fewer generations, or choose paths as result",
-            ));
-        }
         let (mut symbols, top) = chain(self.lists, self.root, expansion.reach, expansion.ramp.as_ref());
         // Symbols of other forms of this run come before.
         let before = artwork.symbols.len();
@@ -370,10 +371,23 @@ impl Run<'_> {
         let near = 1e-4 * expansion.lists.lists[self.root].size * expansion.place.determinant().abs().sqrt();
         // Lines of different looks stay apart.
         let mut lines: BTreeMap<usize, (Joiner, Style, usize)> = BTreeMap::new();
+        // What is filled is no line, and stays as it is.
+        let mut shapes: Vec<Item> = Vec::new();
         expansion.walk(|step| {
             if let Step::Draw(drawn) = step {
-                let look = expansion.look(&drawn, &mut looks);
-                let path = look.transform * expansion.lists.primitives[drawn.primitive].path.clone();
+                let mut look = expansion.look(&drawn, &mut looks);
+                if !look.is_flat {
+                    // No width is right all around; a mean one is nearest.
+                    look.width = look.transform.determinant().abs().sqrt();
+                }
+                let primitive = &expansion.lists.primitives[drawn.primitive];
+                let path = look.transform * primitive.path.clone();
+                if primitive.style.is_filled() {
+                    let style = expansion.own_style(&drawn, &look);
+                    let part = Part { path, transform: Affine::IDENTITY, style };
+                    shapes.push(Item::new(primitive.of.clone(), vec![part]));
+                    return true;
+                }
                 let apart = join == Join::Touching;
                 let line = lines.entry(if apart { look.style } else { 0 }).or_insert_with(|| {
                     (Joiner::new(join, near), expansion.own_style(&drawn, &look), drawn.primitive)
@@ -382,7 +396,7 @@ impl Run<'_> {
             }
             true
         });
-        let mut items = Vec::new();
+        let mut items = shapes;
         for (joiner, style, primitive) in lines.into_values() {
             for path in joiner.finish() {
                 let part = Part { path, transform: Affine::IDENTITY, style: style.clone() };
