@@ -61,6 +61,27 @@ impl<'a> Sheet<'a> {
 
     /// The declarations for a node, weakest first.
     pub fn matching(&self, node: Node<'a, '_>) -> Vec<Declaration<'a>> {
+        let rules = self.matching_rules(node).into_iter();
+        rules.flat_map(|i| self.rules[i].declarations.iter().copied()).collect()
+    }
+
+    /// All declarations for a node, if some of them are for its id.
+    pub fn matching_by_id(&self, node: Node<'a, '_>) -> Vec<Declaration<'a>> {
+        let rules = self.matching_rules(node);
+        // The first of the three numbers counts ids.
+        let is_by_id = |i: &usize| self.rules[*i].selector.specificity()[0] > 0;
+        if !rules.iter().any(is_by_id) {
+            return Vec::new();
+        }
+        rules.into_iter().flat_map(|i| self.rules[i].declarations.iter().copied()).collect()
+    }
+
+    /// True if some rule declares a property.
+    pub fn declares(&self, property: &str) -> bool {
+        self.rules.iter().any(|rule| rule.declarations.iter().any(|d| d.name == property))
+    }
+
+    fn matching_rules(&self, node: Node<'a, '_>) -> Vec<usize> {
         if self.rules.is_empty() {
             return Vec::new();
         }
@@ -83,7 +104,7 @@ impl<'a> Sheet<'a> {
         }
         found.sort_unstable();
         found.dedup();
-        found.into_iter().flat_map(|i| self.rules[i].declarations.iter().copied()).collect()
+        found
     }
 }
 

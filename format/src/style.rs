@@ -4,6 +4,7 @@ use crate::css::{self, Sheet};
 use crate::units::{Axis, Units};
 use crate::xml::PlainAttribute;
 use roxmltree::Node;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -18,11 +19,14 @@ pub enum FillRule {
 }
 
 /// Properties that children inherit, and that a placed copy must carry along.
-const INHERITED: [&str; 15] = [
+const INHERITED: [&str; 18] = [
     "color",
     "fill",
     "fill-opacity",
     "fill-rule",
+    "marker-end",
+    "marker-mid",
+    "marker-start",
     "paint-order",
     "stroke",
     "stroke-dasharray",
@@ -51,7 +55,23 @@ const TEXT: [&str; 12] = [
     "dominant-baseline",
 ];
 /// Properties of one object alone.
-const OWN: [&str; 4] = ["display", "vector-effect", "transform", "transform-origin"];
+const OWN: [&str; 8] = [
+    "clip-path",
+    "display",
+    "filter",
+    "mask",
+    "mix-blend-mode",
+    "transform",
+    "transform-origin",
+    "vector-effect",
+];
+/// What an object or a group around it may have that paint does not carry along, and the
+/// property that gives it.
+const EFFECTS: [(&str, &str); 4] =
+    [("clip-path", "clip"), ("filter", "filter"), ("mask", "mask"), ("mix-blend-mode", "blend mode")];
+
+/// The effect of an image, whose outline is otherwise like a shape's.
+pub(crate) const PICTURE: &str = "picture";
 
 /// A longer value is left out: each object that inherits it writes it out again.
 const LONGEST_VALUE: usize = 4096;
@@ -73,6 +93,9 @@ pub struct Style {
     opacity: f64,
     /// Font size in px, for `em`.
     font_size: f64,
+    /// Effects of the object and the groups around it, inside its role, that paint does not
+    /// carry along.
+    effects: Vec<&'static str>,
 }
 
 impl Default for Style {
@@ -84,7 +107,7 @@ impl Default for Style {
 impl Style {
     /// The style of the root's parent: SVG's initial values.
     pub(crate) fn initial() -> Self {
-        Style { properties: Arc::default(), opacity: 1.0, font_size: 16.0 }
+        Style { properties: Arc::default(), opacity: 1.0, font_size: 16.0, effects: Vec::new() }
     }
 
     /// A style that only fills.
@@ -144,9 +167,45 @@ impl Style {
         self.font_size
     }
 
-    /// Opacity of groups around an annotated object belongs to those groups, not to copies.
-    pub(crate) fn forget_opacity(&mut self) {
+    /// Opacity and effects of groups around an annotated object belong to those groups, not to
+    /// copies.
+    pub(crate) fn forget_groups(&mut self) {
         self.opacity = 1.0;
+        self.effects.clear();
+    }
+
+    /// What the object is drawn with that copies of its shape and paint lack, such as a filter.
+    pub fn effects(&self) -> &[&'static str] {
+        &self.effects
+    }
+
+    /// True for the outline of an image, which is no shape to be painted.
+    pub fn is_picture(&self) -> bool {
+        self.effects.contains(&PICTURE)
+    }
+
+    /// True if the object takes up room but is not drawn.
+    pub(crate) fn is_invisible(&self) -> bool {
+        matches!(self.get("visibility"), Some("hidden" | "collapse"))
+    }
+
+    /// Notes an effect that is no property.
+    pub(crate) fn add_effect(&mut self, effect: &'static str) {
+        if !self.effects.contains(&effect) {
+            self.effects.push(effect);
+        }
+    }
+
+    /// True if what is drawn depends on where the object's own coordinates lie, as a gradient does.
+    pub fn has_paint_server(&self) -> bool {
+        ["fill", "stroke"].into_iter().any(|name| self.get(name).is_some_and(|paint| paint.contains("url(")))
+    }
+
+    /// True if something is drawn at the nodes of the path.
+    pub fn has_markers(&self) -> bool {
+        ["marker-start", "marker-mid", "marker-end"]
+            .into_iter()
+            .any(|name| self.get(name).is_some_and(|marker| marker != "none"))
     }
 
     /// This style with all widths multiplied, for a copy drawn larger or smaller.
@@ -207,6 +266,22 @@ impl Style {
         out
     }
 
+    /// The text of a `style` attribute for a group, so that what is in it inherits this style.
+    pub(crate) fn inherited_css(&self) -> String {
+        let mut out = self.css();
+        for name in ["color", "visibility"] {
+            if let Some(value) = self.get(name) {
+                out.push_str(&format!(";{name}:{value}"));
+            }
+        }
+        let text = self.text_css();
+        if text != Style::initial().text_css() {
+            out.push(';');
+            out.push_str(&text);
+        }
+        out
+    }
+
     /// Text properties as a `style` attribute, for the outlines of text.
     pub(crate) fn text_css(&self) -> String {
         let mut out = format!("font-size:{}px", self.font_size);
@@ -217,6 +292,75 @@ impl Style {
         }
         out
     }
+}
+
+/// Properties of one object alone, and their values where nothing is said.
+const OWN_INITIAL: [(&str, &str); 7] = [
+    ("clip-path", "none"),
+    ("display", "inline"),
+    ("filter", "none"),
+    ("mask", "none"),
+    ("mix-blend-mode", "normal"),
+    ("opacity", "1"),
+    ("vector-effect", "none"),
+];
+/// The same of inherited properties; `fill` is always written.
+const INHERITED_INITIAL: [(&str, &str); 16] = [
+    ("fill-opacity", "1"),
+    ("fill-rule", "nonzero"),
+    ("marker-end", "none"),
+    ("marker-mid", "none"),
+    ("marker-start", "none"),
+    ("paint-order", "normal"),
+    ("shape-rendering", "auto"),
+    ("stroke", "none"),
+    ("stroke-dasharray", "none"),
+    ("stroke-dashoffset", "0"),
+    ("stroke-linecap", "butt"),
+    ("stroke-linejoin", "miter"),
+    ("stroke-miterlimit", "4"),
+    ("stroke-opacity", "1"),
+    ("stroke-width", "1"),
+    ("visibility", "visible"),
+];
+
+/// What a drawing's rules would change in shapes that are added to it, and the values against it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Guard {
+    own: Vec<(&'static str, &'static str)>,
+    inherited: Vec<(&'static str, &'static str)>,
+}
+
+impl Guard {
+    /// The style of a shape, with all that it does not say itself.
+    pub fn shape<'t>(&self, css: &'t str) -> Cow<'t, str> {
+        guarded(css, self.own.iter().chain(&self.inherited))
+    }
+
+    /// The style of a group or a clone.
+    pub fn group<'t>(&self, css: &'t str) -> Cow<'t, str> {
+        guarded(css, self.own.iter())
+    }
+}
+
+fn guarded<'t, 'g>(
+    css: &'t str,
+    guard: impl Iterator<Item = &'g (&'static str, &'static str)>,
+) -> Cow<'t, str> {
+    let mut out = Cow::Borrowed(css);
+    for (name, value) in guard {
+        let mut said = css.split(';').filter_map(|declaration| declaration.split_once(':'));
+        if !said.any(|(own, _)| own == *name) {
+            let text = out.to_mut();
+            if !text.is_empty() {
+                text.push(';');
+            }
+            text.push_str(name);
+            text.push(':');
+            text.push_str(value);
+        }
+    }
+    out
 }
 
 /// All style sheets of a drawing.
@@ -240,31 +384,63 @@ impl<'a> Cascade<'a> {
         for name in OWN {
             style.remove(name);
         }
+        let declared = self.declared(node);
+        // What other properties of the same object refer to comes first.
+        for &(name, value) in &declared {
+            match name {
+                "font-size" => style.font_size = font_size(value, parent, units).unwrap_or(style.font_size),
+                "color" => set_property(&mut style, parent, "color", value.trim(), units),
+                _ => {}
+            }
+        }
+        let units = Units { em: style.font_size, viewport: units.viewport };
         let mut opacity = 1.0;
-        for (name, value) in self.declared(node) {
+        for (name, value) in declared {
             if name == "opacity" {
                 opacity = parse_opacity(value).unwrap_or(1.0);
-            } else if name == "font-size" {
-                let relative = Units { em: parent.font_size, viewport: units.viewport };
-                let percent = value
-                    .trim()
-                    .strip_suffix('%')
-                    .and_then(|p| p.parse::<f64>().ok())
-                    .map(|p| p / 100.0 * parent.font_size);
-                if let Some(size) = percent
-                    .or_else(|| relative.resolve(value, Axis::Y))
-                    .filter(|size| (0.0..=WIDEST).contains(size))
-                {
-                    style.font_size = size;
+            } else if name == "marker" {
+                for name in ["marker-start", "marker-mid", "marker-end"] {
+                    set_property(&mut style, parent, name, value.trim(), &units);
                 }
-            } else if let Some(&name) =
-                INHERITED.iter().chain(&TEXT).chain(&OWN).find(|&&known| known == name)
+            } else if !matches!(name, "color" | "font-size")
+                && let Some(&name) = INHERITED.iter().chain(&TEXT).chain(&OWN).find(|&&known| known == name)
             {
-                set_property(&mut style, parent, name, value.trim(), units);
+                set_property(&mut style, parent, name, value.trim(), &units);
             }
+        }
+        for (name, effect) in EFFECTS {
+            if style.get(name).is_some_and(|value| !matches!(value, "none" | "normal" | "")) {
+                style.add_effect(effect);
+            }
+        }
+        if opacity < 1.0 && node.children().filter(Node::is_element).count() > 1 {
+            style.add_effect("opacity as a group");
         }
         style.opacity = parent.opacity * opacity;
         style
+    }
+
+    /// Declarations that keep rules of the drawing from reaching what is added to it.
+    pub fn guard(&self) -> Guard {
+        let declared = |list: &[(&'static str, &'static str)]| {
+            let is_declared = |name: &str| {
+                self.sheet.declares(name) || name.starts_with("marker-") && self.sheet.declares("marker")
+            };
+            list.iter().filter(|(name, _)| is_declared(name)).copied().collect()
+        };
+        Guard { own: declared(&OWN_INITIAL), inherited: declared(&INHERITED_INITIAL) }
+    }
+
+    /// What rules say of a node, as the start of a `style` attribute, if some of them are for its id.
+    pub fn rules_by_id(&self, node: Node<'a, '_>) -> String {
+        let declarations = self.sheet.matching_by_id(node);
+        declarations
+            .iter()
+            .map(|d| {
+                let important = if d.important { "!important" } else { "" };
+                format!("{}:{}{important};", d.name, d.value)
+            })
+            .collect()
     }
 
     /// Declarations from weakest to strongest: attributes, rules, `style`, then `!important`.
@@ -286,7 +462,23 @@ impl<'a> Cascade<'a> {
     }
 }
 
+/// A font size in px.
+fn font_size(value: &str, parent: &Style, units: &Units) -> Option<f64> {
+    let value = value.trim();
+    let percent = value.strip_suffix('%').and_then(|percent| percent.parse::<f64>().ok());
+    let size = match percent {
+        Some(percent) => percent / 100.0 * parent.font_size,
+        None => Units { em: parent.font_size, viewport: units.viewport }.resolve(value, Axis::Y)?,
+    };
+    (0.0..=WIDEST).contains(&size).then_some(size)
+}
+
 fn set_property(style: &mut Style, parent: &Style, name: &'static str, value: &str, units: &Units) {
+    // No value of these properties has any of these, and a style that it is written into would
+    // say something else.
+    if value.contains([';', '{', '}']) {
+        return;
+    }
     if value == "inherit" {
         match parent.get(name) {
             Some(inherited) => style.put(name, inherited),
@@ -296,8 +488,9 @@ fn set_property(style: &mut Style, parent: &Style, name: &'static str, value: &s
     }
     let value = match name {
         "stroke-width" | "stroke-dashoffset" => match units.resolve(value, Axis::Diagonal) {
-            Some(width) if width.abs() <= WIDEST => width.to_string(),
-            _ => return,
+            // One beyond all measure is refused with the coordinates.
+            Some(width) => width.clamp(-f64::MAX, f64::MAX).to_string(),
+            None => return,
         },
         "stroke-dasharray" if value != "none" => {
             let lengths: Option<Vec<String>> = value
@@ -355,6 +548,36 @@ mod tests {
             "path{stroke:blue !important}",
         );
         assert_eq!((style.get("fill"), style.get("stroke")), (Some("teal"), Some("blue")));
+    }
+
+    #[test]
+    fn an_objects_own_color_and_font_size_come_first() {
+        let style = computed(
+            "<g color='teal' font-size='10'><path fill='currentColor' stroke='red' stroke-width='2em' font-size='150%' color='gold'/></g>",
+            "",
+        );
+        assert_eq!(style.css(), "fill:gold;stroke:red;stroke-width:30");
+    }
+
+    #[test]
+    fn effects_are_known_and_a_value_cannot_end_a_declaration() {
+        let style = computed(
+            "<g filter='url(#f)' opacity='.5'><path fill='red;stroke:blue' style='clip-path:url(#c);mask:none'/><path/></g>",
+            "",
+        );
+        assert_eq!(style.effects(), ["filter", "opacity as a group"]);
+        let style = computed("<g><path fill='red;stroke:blue' style='clip-path:url(#c);mask:none'/></g>", "");
+        assert_eq!((style.effects(), style.css().as_str()), (&["clip"][..], "fill:#000000"));
+    }
+
+    #[test]
+    fn a_guard_says_what_a_style_leaves_out() {
+        let guard = Cascade::new(&["path{stroke:lime;opacity:.5} #a{marker:url(#m)}"]).guard();
+        assert_eq!(
+            guard.shape("fill:red;marker-mid:url(#n)"),
+            "fill:red;marker-mid:url(#n);opacity:1;marker-end:none;marker-start:none;stroke:none"
+        );
+        assert_eq!(guard.group(""), "opacity:1");
     }
 
     #[test]

@@ -5,6 +5,7 @@ mod stream;
 use crate::artwork::{Artwork, Group, Item, Part, Symbol, SymbolItem};
 use crate::number::{write_number, write_path_data};
 use crate::recipe::Recipe;
+use crate::style::Guard;
 use crate::vocabulary::{INKSCAPE, NAMESPACE, SODIPODI, SVG, XLINK};
 use kurbo::Affine;
 use std::borrow::Cow;
@@ -28,6 +29,18 @@ pub(crate) struct Target<'a> {
     pub in_empty_root: bool,
     /// The line end of the drawing.
     pub newline: &'a str,
+    /// Against the drawing's style sheets.
+    pub guard: &'a Guard,
+}
+
+impl Target<'_> {
+    /// The attributes of a group or clone that keep rules off.
+    fn guard_group(&self, out: &mut String, css: &str) {
+        let css = self.guard.group(css);
+        if !css.is_empty() {
+            attribute(out, "style", &css);
+        }
+    }
 }
 
 /// Where text goes: into memory, or out as soon as there is some.
@@ -137,6 +150,7 @@ fn symbols(out: &mut String, artwork: &Artwork, target: &Target) {
     let (prefix, newline) = (target.svg_prefix, target.newline);
     let _ = write!(out, "{newline}<{prefix}defs");
     attribute(out, "id", &format!("{}-symbols", target.id));
+    target.guard_group(out, "");
     if artwork
         .symbols
         .iter()
@@ -152,6 +166,7 @@ fn symbols(out: &mut String, artwork: &Artwork, target: &Target) {
         let _ = write!(out, "{newline}<{prefix}g");
         attribute(out, "id", &symbol_id(target, symbol));
         attribute(out, "inkscape:label", &symbol.name);
+        target.guard_group(out, "");
         out.push('>');
         // Of size 1, so their coordinates need more decimals than those of a page.
         const DECIMALS: usize = 5;
@@ -159,9 +174,9 @@ fn symbols(out: &mut String, artwork: &Artwork, target: &Target) {
             match item {
                 SymbolItem::Part(part) => write_part(out, part, None, DECIMALS, &own),
                 SymbolItem::Symbol(other, pose) => {
-                    write_use(out, prefix, &symbol_id(target, &artwork.symbols[*other]), *pose, "");
+                    write_use(out, &symbol_id(target, &artwork.symbols[*other]), *pose, "", target);
                 }
-                SymbolItem::Object(id, pose, style) => write_use(out, prefix, id, *pose, style),
+                SymbolItem::Object(id, pose, style) => write_use(out, id, *pose, style, target),
             }
         }
         let _ = write!(out, "</{prefix}g>");
@@ -174,14 +189,12 @@ fn symbol_id(target: &Target, symbol: &Symbol) -> String {
 }
 
 /// A clone without an id.
-fn write_use(out: &mut String, prefix: &str, id: &str, pose: Affine, style: &str) {
-    let _ = write!(out, "<{prefix}use");
+fn write_use(out: &mut String, id: &str, pose: Affine, style: &str, target: &Target) {
+    let _ = write!(out, "<{}use", target.svg_prefix);
     if pose != Affine::IDENTITY {
         attribute(out, "transform", &matrix(pose, MATRIX_DECIMALS));
     }
-    if !style.is_empty() {
-        attribute(out, "style", style);
-    }
+    target.guard_group(out, style);
     // The old name: programs of before SVG 2 know only that.
     attribute(out, "xlink:href", &format!("#{id}"));
     out.push_str("/>");
@@ -198,9 +211,7 @@ fn sublayer(sink: &mut Sink, group: &Group, artwork: &Artwork, target: &Target) 
     if group.items.iter().any(|item| item.clone.is_some()) {
         attribute(out, "xmlns:xlink", XLINK);
     }
-    if group.hidden {
-        attribute(out, "style", "display:none");
-    }
+    target.guard_group(out, if group.hidden { "display:none" } else { "" });
     out.push('>');
     let grouped = group.items.len() > SIBLINGS;
     for (chunk_index, chunk) in group.items.chunks(SIBLINGS).enumerate() {
@@ -208,6 +219,7 @@ fn sublayer(sink: &mut Sink, group: &Group, artwork: &Artwork, target: &Target) 
         if grouped {
             let _ = write!(out, "{newline}<{prefix}g");
             attribute(out, "id", &format!("{id}-g{}", chunk_index + 1));
+            target.guard_group(out, "");
             out.push('>');
         }
         for (i, item) in chunk.iter().enumerate() {
@@ -234,6 +246,7 @@ fn write_item(out: &mut String, item: &Item, id: &str, artwork: &Artwork, target
         attribute(out, "transform", &matrix(target.inverse * pose, decimals + CLONE_DECIMALS));
         // The old name as well: programs of before SVG 2 know only that.
         attribute(out, "xlink:href", &format!("#{}", symbol_id(target, &artwork.symbols[symbol])));
+        target.guard_group(out, "");
         out.push_str("/>");
         return;
     }
@@ -245,6 +258,7 @@ fn write_item(out: &mut String, item: &Item, id: &str, artwork: &Artwork, target
     let _ = write!(out, "<{prefix}g");
     attribute(out, "id", id);
     attribute(out, "rinceau:of", &item.of);
+    target.guard_group(out, "");
     out.push('>');
     for part in &item.parts {
         write_part(out, part, None, decimals, target);
@@ -262,6 +276,7 @@ pub(crate) fn write_part_at(out: &mut String, part: &Part, svg_prefix: &str) {
         inverse: Affine::IDENTITY,
         in_empty_root: false,
         newline: "",
+        guard: &Guard::default(),
     };
     write_part(out, part, None, DECIMALS, &target);
 }
@@ -284,7 +299,7 @@ fn write_part(out: &mut String, part: &Part, item: Option<(&str, &str)>, decimal
         }
         Cow::Borrowed(&part.path)
     };
-    attribute(out, "style", &part.style.css());
+    attribute(out, "style", &target.guard.shape(&part.style.css()));
     // Most of a layer, and nothing in it needs to be escaped.
     out.push_str(" d=\"");
     write_path_data(out, &path, decimals);

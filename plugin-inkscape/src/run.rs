@@ -70,10 +70,7 @@ pub fn generate(job: Job) -> Result<Done, Error> {
         with,
         label: format!("Ornament - {}", labels.join(", ")),
     };
-    let mut document = document;
-    for step in &artwork.steps {
-        document = document.with_step(step, &recipe)?;
-    }
+    let document = document.with_steps(&artwork.steps, &recipe)?;
     Ok(Done { document, scene, artwork, recipe })
 }
 

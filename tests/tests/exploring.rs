@@ -139,6 +139,42 @@ mod tacks {
         assert_eq!(by_id(&parse(&after), "a").attribute("transform"), Some("matrix(-1 0 0 -1 14.8 58.4)"));
     }
 
+    /// The clone follows its source already: it is moved once, not twice.
+    #[test]
+    fn move_a_clone_with_its_source() {
+        let before = drawing().replace("<rect id=\"square\"", "<rect id=\"square\" transform=\"rotate(9)\"");
+        let after = tack(&before, "mirror", &["square", "copy"]);
+        let base = |text: &str| match &scene_of(text).forms[0].items[0] {
+            FormItem::Primitive(drawn) => drawn.part.transform,
+            FormItem::Clone(_) => panic!("the square comes first"),
+        };
+        let by = base(&after) * base(&before).inverse();
+        assert_maps(by, (60.0, 80.0), (60.0, 80.0));
+        assert!((by.determinant() + 1.0).abs() < 1e-5);
+        let drawn = |text: &str| replication(text) * base(text);
+        let expected = by * drawn(&before);
+        assert!(
+            drawn(&after).as_coeffs().iter().zip(expected.as_coeffs()).all(|(a, b)| (a - b).abs() < 1e-5)
+        );
+    }
+
+    /// `transform-origin` in a style, and of one value.
+    #[test]
+    fn know_where_an_origin_is() {
+        let moved = |origin: &str| {
+            let text = svg(&format!(
+                "<rect id='a' transform='rotate(90)' {origin} width='9' height='9'/><path class='rinceau-guide' d='M0,0 L10,0'/>"
+            ));
+            by_id(&parse(&tack(&text, "drag", &["a"])), "a").attribute("transform").unwrap().to_owned()
+        };
+        // About 100,100: the attribute itself stays a turn and a shift.
+        for origin in
+            ["transform-origin='center'", "style='transform-origin:50% 50%'", "transform-origin='100'"]
+        {
+            assert_eq!(moved(origin), "matrix(0 1 -1 0 10 0)", "{origin}");
+        }
+    }
+
     #[test]
     fn that_say_nothing_are_refused() {
         let refusal = |text: &str, operation: &str, ids: &[&str]| {
@@ -154,6 +190,15 @@ mod tacks {
         insta::assert_snapshot!(refusal(&drawing(), "identity", &["square"]), @"rinceau: 3:35: 'square' is no clone of anything in this drawing. Select a clone (Edit > Clone > Create Clone). [no-clone]");
         insta::assert_snapshot!(refusal(&drawing(), "mirror", &["nobody"]), @"rinceau: No object has the id 'nobody'. Check the id in Object > Object Properties. [unknown-id]");
         insta::assert_snapshot!(refusal(&drawing().replace("fill=\"teal\"", "style=\"transform:scale(2)\""), "mirror", &["square"]), @"rinceau: 3:35: 'square' is moved by its style. Group it (Object > Group), and select the group. [styled-transform]");
+        let sheet =
+            drawing().replace("<g transform=", "<style>#square{transform:scale(2)}</style><g transform=");
+        insta::assert_snapshot!(refusal(&sheet, "mirror", &["square"]), @"rinceau: 3:35: 'square' is moved by its style. Group it (Object > Group), and select the group. [styled-transform]");
+        let unreadable =
+            drawing().replace("<rect id=\"square\"", "<rect id=\"square\" transform=\"spin(9)\"");
+        insta::assert_snapshot!(refusal(&unreadable, "mirror", &["square"]), @"rinceau: 3:35: The object 'square' cannot be read: its transform cannot be read. Redraw it, or clear its mark. [broken-object]");
+        let text = drawing()
+            .replace("<circle id=\"t1\"", "<text><tspan id=\"word\">a</tspan></text><circle id=\"t1\"");
+        insta::assert_snapshot!(refusal(&text, "mirror", &["word"]), @"rinceau: 6:7: 'word' is nothing that can be moved by itself. Select the shape, text or group that it belongs to. [not-movable]");
     }
 }
 
@@ -208,6 +253,32 @@ mod a_map {
             .map(|layer| layer.attribute((RINCEAU, "source")).unwrap())
             .collect::<Vec<_>>();
         assert_eq!(layer, ["tree", "step-1-tree"]);
+    }
+
+    /// Rules for an id do not know a copy, and still paint it.
+    #[test]
+    fn keeps_the_paint_of_rules() {
+        let ruled = svg(&format!("<style>#trunk{{stroke:red}}</style>{TREE}"));
+        let out = run(&ruled, &["--id", "tree"]);
+        let xml = parse(&out);
+        assert_eq!(
+            by_id(&xml, "step-1-trunk").attribute("style"),
+            Some("stroke:red;fill:none;stroke-width:6")
+        );
+        assert_eq!(by_id(&xml, "trunk").attribute("style"), Some("fill:none;stroke-width:6"));
+    }
+
+    /// A layer is renewed where its form is drawn again with another.
+    #[test]
+    fn of_two_forms_takes_the_layer_of_one() {
+        let marked = svg(&TREE.replace("id=\"tree\"", "id=\"tree\" class=\"rinceau-form\""));
+        let one = run(&marked, &[]);
+        let resumed = rinceau(["resume", "--id", "step-1"]).input(one).succeed().text().to_owned();
+        let both = run(&resumed, &[]);
+        let xml = parse(&both);
+        let layers = support::layers(&xml);
+        assert_eq!(layers.len(), 1);
+        assert_eq!(layers[0].attribute((RINCEAU, "source")), Some("tree form-of-step-1-tree"));
     }
 
     #[test]

@@ -221,6 +221,58 @@ fn rendered(svg: &str) -> Vec<(String, Rect)> {
     out
 }
 
+mod paint {
+    use super::*;
+
+    /// Paint, units and effects that a copy must not lose.
+    const DRAWING: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" width="400" height="400">
+<style>path{stroke:green;stroke-width:3} use{opacity:.9} #leaf{fill:crimson}</style>
+<linearGradient id="g" gradientUnits="userSpaceOnUse" x1="20" y1="300" x2="90" y2="300"><stop stop-color="gold"/><stop offset="1" stop-color="navy"/></linearGradient>
+<marker id="m" markerWidth="4" markerHeight="4" refX="2" refY="2"><circle cx="2" cy="2" r="2" fill="red"/></marker>
+<g color="teal" font-size="20">
+<g id="form" class="rinceau-form">
+<rect id="r" x="20" y="280" width="70" height="40" fill="url(#g)" stroke="currentColor" stroke-width="0.2em" font-size="10"/>
+<rect id="em" x="20" y="270" width="70" height="4" fill="none" stroke="currentColor" stroke-width="0.05em"/>
+<line id="l" x1="20" y1="350" x2="90" y2="350" stroke="black" stroke-width="2" marker-end="url(#m)"/>
+<circle id="leaf" cx="55" cy="260" r="10"/>
+<switch><rect systemLanguage="fr" width="300" height="10"/><rect id="yes" x="20" y="330" width="30" height="5"/></switch>
+<rect id="unseen" visibility="hidden" width="5" height="300"/>
+<use href="#r" transform="translate(140 -20) rotate(-20 20 280) scale(.8)"/>
+</g></g></svg>"##;
+
+    #[test]
+    fn is_the_same_in_both_outputs() {
+        let draw = |output: &str| {
+            let arguments = ["recurse", "--depth", "4", "--merge", "false", "--output", output];
+            rendered(support::rinceau(arguments).input(DRAWING).succeed().text())
+        };
+        let (paths, clones) = (draw("paths"), draw("clones"));
+        // The drawing itself and four generations of six shapes; a marker is drawn, too.
+        assert_eq!(paths.len(), clones.len());
+        assert!(paths.len() > 4 * 6);
+        for (a, b) in paths.iter().zip(&clones) {
+            assert_eq!(a.0, b.0);
+            let corner = (a.1.origin() - b.1.origin()).hypot();
+            let near = 0.2 + 0.03 * a.1.width().max(a.1.height());
+            assert!(corner < near && (a.1.width() - b.1.width()).abs() < near, "{a:?} is not {b:?}");
+        }
+    }
+
+    #[test]
+    fn that_only_clones_keep_is_named() {
+        let image = "<image id='photo' width='20' height='20' href='data:,'/><g filter='url(#f)'><path id='l2' d='M0,0H9'/></g>";
+        let drawing = DRAWING.replace("<switch>", &format!("{image}<switch>"));
+        let paths = support::rinceau(["recurse", "--depth", "2"]).input(drawing.as_str()).succeed();
+        insta::assert_snapshot!(paths.stderr.trim_end(), @"rinceau: note: 'l2' is drawn without its filter; choose clones as result to keep it
+rinceau: note: 'photo' is an image and left out; choose clones as result to keep it");
+        assert!(!paths.text().contains("rinceau:of=\"photo\""));
+        let clones =
+            support::rinceau(["recurse", "--depth", "2", "--output", "clones"]).input(drawing).succeed();
+        assert_eq!(clones.stderr, "");
+        assert!(clones.text().contains("href=\"#photo\""));
+    }
+}
+
 mod facts {
     use super::*;
     use rinceau::geom::affine::KeepsTacks;

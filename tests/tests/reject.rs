@@ -297,6 +297,12 @@ fn a_layer_over_other_shapes_too() {
 }
 
 #[test]
+fn layers_over_some_of_the_shapes_each() {
+    let sun = CIRCLE.replace("sun", "moon");
+    insta::assert_snapshot!(case(svg(&format!("{CIRCLE}{sun}\n<g id='old' rinceau:result='pack' rinceau:source='sun'/><g id='older' rinceau:result='pack' rinceau:source='moon'/>"))).refusal(), @"3:1: The layer 'old' already fills some of the shapes alone. Fill its shapes and the others separately (select them), or delete the layer first. [layer-overlap]");
+}
+
+#[test]
 fn a_layer_scaled_to_nothing() {
     insta::assert_snapshot!(case(svg(&format!("{CIRCLE}\n<g id='old' transform='scale(0)' rinceau:result='pack' rinceau:source='sun'/>"))).refusal(), @"3:1: The layer 'old' is scaled to nothing. Delete it and run again. [flat-layer]");
 }

@@ -36,54 +36,84 @@ struct Known {
 }
 
 impl Document {
-    /// Adds a step to the map of the exploration, or leaves it if the form is what it was.
+    /// Adds steps to the map of the exploration, but for those whose form is what it was.
     ///
     /// Errors: a form that comes out of an entity, or has parts that two objects have the id of.
-    pub fn with_step(&self, step: &Step, recipe: &Recipe) -> Result<Document, Error> {
+    pub fn with_steps(&self, fresh: &[Step], recipe: &Recipe) -> Result<Document, Error> {
+        if fresh.is_empty() {
+            return Ok(self.clone());
+        }
         let text = self.parse(|xml| {
             let resolver = Resolver::new(xml, &self.limits)?;
-            let mut forms = Vec::new();
-            for id in &step.forms {
-                forms.push(resolver.by_reference(id)?.ok_or_else(|| unknown_id(id))?);
-            }
-            let Some(&root) = forms.first() else { return Ok(self.text.clone()) };
-            let steps = known_steps(xml);
-            let parent = parent_of(&resolver, root, &steps);
             let params = serde_json::Value::Object(recipe.params.clone()).to_string();
-            if parent.is_some_and(|parent| parent.digest == step.digest && parent.params == params) {
+            let mut steps = known_steps(xml);
+            let mut out = String::new();
+            for step in fresh {
+                let mut forms = Vec::new();
+                for id in &step.forms {
+                    forms.push(resolver.by_reference(id)?.ok_or_else(|| unknown_id(id))?);
+                }
+                let Some(&root) = forms.first() else { continue };
+                let parent = parent_of(&resolver, root, &steps);
+                if parent.is_some_and(|parent| parent.digest == step.digest && parent.params == params) {
+                    continue;
+                }
+                let number = steps.iter().map(|step| step.number).max().unwrap_or(0) + 1;
+                let (column, row) = cell(parent, &steps);
+                let known = Known {
+                    number,
+                    form: resolver.reference(root),
+                    digest: step.digest.clone(),
+                    params: params.clone(),
+                    column,
+                    row,
+                };
+                self.write_step(&resolver, step, &forms, (&known, parent), &mut out)?;
+                steps.push(known);
+            }
+            if out.is_empty() {
                 return Ok(self.text.clone());
             }
-            let number = steps.iter().map(|step| step.number).max().unwrap_or(0) + 1;
-            let (column, row) = cell(parent, &steps);
-            let id = free_id(xml, &format!("step-{number}"));
-            let (prefix, newline) = (prefix_of(self, xml.root_element()), self.newline());
-            let mut out = String::new();
-            let _ = write!(out, "{newline}<{prefix}g");
-            declare(&mut out, xml.root_element());
-            attribute(&mut out, "id", &id);
-            attribute(&mut out, "inkscape:label", &format!("{number}: {}", label_of(root)));
-            attribute(&mut out, "rinceau:step", &number.to_string());
-            if let Some(parent) = parent {
-                attribute(&mut out, "rinceau:parent", &parent.number.to_string());
-            }
-            attribute(&mut out, "rinceau:form", &resolver.reference(root));
-            attribute(&mut out, "rinceau:digest", &step.digest);
-            attribute(&mut out, "rinceau:cell", &format!("{column} {row}"));
-            attribute(&mut out, "rinceau:params", &params);
-            let _ = write!(out, ">{newline}<{prefix}defs>");
-            self.copies(&resolver, &forms, &|old| format!("{id}-{old}"), None, &mut out)?;
-            let _ = write!(out, "</{prefix}defs>");
-            draw_card(&mut out, prefix, resolver.view, (column, row), parent);
-            let place = place(resolver.view, (column, row));
-            let _ = write!(out, "{newline}<{prefix}g");
-            attribute(&mut out, "transform", &matrix(place, 6));
-            out.push('>');
-            step.picture.iter().for_each(|part| write_part_at(&mut out, part, prefix));
-            let _ = write!(out, "</{prefix}g>{newline}</{prefix}g>");
-            let edit = self.onto_map(xml, out);
-            Ok(splice(&self.text, vec![edit]))
+            Ok(splice(&self.text, vec![self.onto_map(xml, out)]))
         })?;
         Document::with_limits(crate::encoding::encode(&text, self.encoding), self.limits.clone())
+    }
+
+    fn write_step(
+        &self,
+        resolver: &Resolver,
+        step: &Step,
+        forms: &[Node],
+        (known, parent): (&Known, Option<&Known>),
+        out: &mut String,
+    ) -> Result<(), Error> {
+        let root = resolver.xml.root_element();
+        let number = known.number;
+        let id = free_id(resolver.xml, &format!("step-{number}"));
+        let (prefix, newline) = (self.prefix_of(root), self.newline());
+        let _ = write!(out, "{newline}<{prefix}g");
+        declare(out, root);
+        attribute(out, "id", &id);
+        attribute(out, "inkscape:label", &format!("{number}: {}", label_of(forms[0])));
+        attribute(out, "rinceau:step", &number.to_string());
+        if let Some(parent) = parent {
+            attribute(out, "rinceau:parent", &parent.number.to_string());
+        }
+        attribute(out, "rinceau:form", &known.form);
+        attribute(out, "rinceau:digest", &step.digest);
+        attribute(out, "rinceau:cell", &format!("{} {}", known.column, known.row));
+        attribute(out, "rinceau:params", &known.params);
+        let _ = write!(out, ">{newline}<{prefix}defs>");
+        self.copies(resolver, forms, &|old| format!("{id}-{old}"), None, out)?;
+        let _ = write!(out, "</{prefix}defs>");
+        let cell = (known.column, known.row);
+        draw_card(out, prefix, resolver.view, cell, parent);
+        let _ = write!(out, "{newline}<{prefix}g");
+        attribute(out, "transform", &matrix(place(resolver.view, cell), 6));
+        out.push('>');
+        step.picture.iter().for_each(|part| write_part_at(out, part, prefix));
+        let _ = write!(out, "</{prefix}g>{newline}</{prefix}g>");
+        Ok(())
     }
 
     /// The drawing with the form of a step once more as an object, to be changed.
@@ -108,7 +138,7 @@ impl Document {
             let name = format!("form-of-step-{number}");
             let fresh = free_id(xml, &name);
             let rename = |old: &str| format!("{fresh}-{}", old.strip_prefix(&own).unwrap_or(old));
-            let prefix = prefix_of(self, xml.root_element());
+            let prefix = self.prefix_of(xml.root_element());
             let newline = self.newline();
             let mut out = format!("{newline}<{prefix}g");
             declare(&mut out, xml.root_element());
@@ -132,7 +162,7 @@ impl Document {
         root: Option<(Node, &str)>,
         out: &mut String,
     ) -> Result<(), Error> {
-        let prefix = prefix_of(self, resolver.xml.root_element());
+        let prefix = self.prefix_of(resolver.xml.root_element());
         let nodes = || forms.iter().flat_map(|form| form.descendants());
         let ids: HashSet<&str> = nodes().filter_map(|node| node.plain("id")).collect();
         for &form in forms {
@@ -140,9 +170,24 @@ impl Document {
                 self.check_verbatim(node)?;
             }
             let mut edits = Vec::new();
-            for attribute in form.descendants().flat_map(|node| node.attributes()) {
-                if let Some(value) = renamed(&attribute, &ids, rename) {
-                    edits.push((attribute.range_value(), escaped(&value).replace('\'', "&#39;")));
+            for node in form.descendants().filter(Node::is_element) {
+                // Rules for its id do not apply to a copy, which has another.
+                let ruled = resolver.cascade.rules_by_id(node);
+                let is_styled = node.plain("style").is_some();
+                for attribute in node.attributes() {
+                    let value = renamed(&attribute, &ids, rename);
+                    let rules = if attribute.name() == "style" { ruled.as_str() } else { "" };
+                    if value.is_some() || !rules.is_empty() {
+                        let value = format!("{rules}{}", value.as_deref().unwrap_or(attribute.value()));
+                        edits.push((attribute.range_value(), escaped(&value).replace('\'', "&#39;")));
+                    }
+                }
+                if !ruled.is_empty() && !is_styled {
+                    let range = node.range();
+                    let end = range.start + start_tag_end(&self.text[range]).0;
+                    let mut fresh = String::new();
+                    attribute(&mut fresh, "style", &ruled);
+                    edits.push((end..end, fresh));
                 }
             }
             let range = form.range();
@@ -192,7 +237,7 @@ impl Document {
                 return (at..at, format!("{}{}", step.trim_start(), self.newline()));
             }
         }
-        let (prefix, newline) = (prefix_of(self, xml.root_element()), self.newline());
+        let (prefix, newline) = (self.prefix_of(xml.root_element()), self.newline());
         let mut out = format!("{newline}<{prefix}g");
         declare(&mut out, xml.root_element());
         attribute(&mut out, "id", &free_id(xml, "explored-forms"));
@@ -307,14 +352,6 @@ fn renamed(attribute: &Attribute, ids: &HashSet<&str>, rename: &dyn Fn(&str) -> 
         }
         _ => None,
     }
-}
-
-/// The prefix of SVG elements at the root, with its colon.
-fn prefix_of<'t>(document: &'t Document, root: Node) -> &'t str {
-    let element = &document.text[root.range()];
-    let name =
-        element[1..].split(|c: char| c.is_whitespace() || c == '>' || c == '/').next().unwrap_or("svg");
-    name.strip_suffix("svg").unwrap_or("")
 }
 
 /// True if a start tag has an attribute of this name as it is written.

@@ -7,6 +7,7 @@ use crate::encoding::Encoding;
 use crate::error::Error;
 use crate::read::{Resolver, layer_transform};
 use crate::recipe::Recipe;
+use crate::style::Guard;
 use crate::vocabulary::{NAMESPACE, SVG};
 use crate::write::{self, Sink, Target, attribute, escaped};
 use crate::xml::{PlainAttribute, is_verbatim};
@@ -74,11 +75,12 @@ impl Document {
         is_empty.then(|| (range.start + tag_end..range.end, "/>".to_owned()))
     }
 
-    /// Puts an artwork into the drawing. A layer of the same generator over the same sources
-    /// is replaced in place and keeps its tag: id, label, transform, visibility, lock.
+    /// Puts an artwork into the drawing. A layer of the same generator over the same sources, or the
+    /// only one over some of them and no others, is replaced in place and keeps its tag: id, label,
+    /// transform, visibility, lock.
     ///
-    /// Errors: a layer that shares some but not all of the sources; a layer with a transform
-    /// that cannot be inverted.
+    /// Errors: a layer that shares some of the sources and has others, or two that have some each;
+    /// a layer with a transform that cannot be inverted.
     pub fn with_layer(&self, artwork: &Artwork, recipe: &Recipe) -> Result<Document, Error> {
         let mut sink = Sink::default();
         self.put_layer(artwork, recipe, &mut sink)?;
@@ -107,6 +109,8 @@ impl Document {
     fn put_layer(&self, artwork: &Artwork, recipe: &Recipe, sink: &mut Sink) -> Result<(), Error> {
         self.parse(|xml| {
             let mut mine = None;
+            // Layers whose sources are all filled again, with others.
+            let mut covered: Vec<Node> = Vec::new();
             let sources: HashSet<&String> = recipe.sources.iter().collect();
             for node in result_nodes(xml) {
                 let old = read_recipe(self, node)?;
@@ -115,6 +119,8 @@ impl Document {
                 }
                 if old.sources == recipe.sources {
                     mine = mine.or(Some(node));
+                } else if !old.sources.is_empty() && old.sources.iter().all(|id| sources.contains(id)) {
+                    covered.push(node);
                 } else if let Some(shared) = old.sources.iter().find(|id| sources.contains(id)) {
                     let sentence = format!(
                         "'{shared}' is already filled, together with others, in the layer '{}'",
@@ -127,6 +133,17 @@ impl Document {
                     )
                     .at(self.position(node)));
                 }
+            }
+            if let [one] = covered[..] {
+                mine = mine.or(Some(one));
+            }
+            if let Some(other) = covered.into_iter().find(|&node| Some(node) != mine) {
+                return Err(Error::new(
+                    "layer-overlap",
+                    format!("The layer '{}' already fills some of the shapes alone", label_of(other)),
+                    "Fill its shapes and the others separately (select them), or delete the layer first",
+                )
+                .at(self.position(other)));
             }
             match mine {
                 Some(node) => self.replaced(xml, node, (artwork, recipe), sink),
@@ -144,6 +161,7 @@ impl Document {
     ) -> Result<(), Error> {
         self.check_verbatim(node)?;
         let resolver = Resolver::new(xml, &self.limits)?;
+        let guard = resolver.cascade.guard();
         let full = layer_transform(&resolver, node);
         let inverse = full.inverse();
         if !inverse.is_finite() || full.determinant().abs() < 1e-12 {
@@ -171,6 +189,7 @@ impl Document {
             inverse,
             in_empty_root: false,
             newline,
+            guard: &guard,
         };
 
         let mut edits = Vec::new();
@@ -240,12 +259,15 @@ impl Document {
     ) -> Result<(), Error> {
         let root = xml.root_element();
         self.check_verbatim(root)?;
+        let has_rules = xml.descendants().any(|node| node.tag_name().name() == "style");
+        let guard = match has_rules {
+            true => Resolver::new(xml, &self.limits)?.cascade.guard(),
+            false => Guard::default(),
+        };
         let range = root.range();
         let element = &self.text[range.clone()];
         let (tag_end, closes) = start_tag_end(element);
-        let name =
-            element[1..].split(|c: char| c.is_whitespace() || c == '>' || c == '/').next().unwrap_or("svg");
-        let prefix = name.strip_suffix("svg").unwrap_or("");
+        let prefix = self.prefix_of(root);
         let id = free_id(xml, &recipe.label);
         let newline = self.newline();
         let target = Target {
@@ -255,10 +277,11 @@ impl Document {
             inverse: Affine::IDENTITY,
             in_empty_root: closes,
             newline,
+            guard: &guard,
         };
         let (open, close) = (write::open_layer(recipe, &target), format!("</{prefix}g>"));
         let edit = if closes {
-            let (before, after) = (format!(">{newline}{open}"), format!("{close}</{name}>"));
+            let (before, after) = (format!(">{newline}{open}"), format!("{close}</{prefix}svg>"));
             (range.start + tag_end..range.end, New::Layer(before, after))
         } else {
             let end = range.start + element.rfind("</").unwrap_or(element.len());
@@ -266,6 +289,15 @@ impl Document {
         };
         splice_to(&self.text, vec![edit], sink, |sink| write::content(sink, artwork, &target));
         Ok(())
+    }
+
+    /// The prefix of SVG elements at the root, with its colon.
+    pub(super) fn prefix_of(&self, root: Node) -> &str {
+        let name = self.text[root.range().start + 1..]
+            .split(|c: char| c.is_whitespace() || c == '>' || c == '/')
+            .next()
+            .unwrap_or("svg");
+        name.strip_suffix("svg").unwrap_or("")
     }
 
     /// The drawing's own line end.

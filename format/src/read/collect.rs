@@ -291,7 +291,7 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
             while let Some((_, clone)) = clones.next_if(|(before, _)| *before <= i) {
                 items.push(RawItem::Clone(clone));
             }
-            if !drawn.of_clone {
+            if !drawn.of_clone && !part.style.is_invisible() {
                 items.push(RawItem::Primitive(Primitive { part, when: drawn.when, live: drawn.live }));
             }
         }

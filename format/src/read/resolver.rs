@@ -226,14 +226,22 @@ pub(crate) fn own_transform(node: Node, units: &Units) -> Result<Affine, String>
 
 /// The point that a node's `transform` attribute is about.
 pub(crate) fn transform_origin(node: Node, units: &Units) -> Point {
-    let mut sides = node.plain("transform-origin").unwrap_or("").split_whitespace();
-    let mut side = |axis| {
-        sides
-            .next()
-            .and_then(|text| keyword(text).or(Some(text)).and_then(|text| units.resolve(text, axis)))
-            .unwrap_or(0.0)
-    };
-    Point::new(side(Axis::X), side(Axis::Y))
+    let styled = node.plain("style").filter(|style| style.contains("transform-origin")).and_then(|style| {
+        crate::css::declarations(style).filter(|d| d.name == "transform-origin").last().map(|d| d.value)
+    });
+    let text = styled.or(node.plain("transform-origin")).unwrap_or("");
+    let mut sides: Vec<&str> = text.split_whitespace().collect();
+    // One alone is of x, but for top and bottom; two may be turned around.
+    let is_y = |side: &str| matches!(side, "top" | "bottom");
+    match sides[..] {
+        [] => return Point::ORIGIN,
+        [one] if is_y(one) => sides.insert(0, "center"),
+        [_] => sides.push("center"),
+        [x, y, ..] if is_y(x) || matches!(y, "left" | "right") => sides.swap(0, 1),
+        _ => {}
+    }
+    let side = |text: &str, axis| units.resolve(keyword(text).unwrap_or(text), axis).unwrap_or(0.0);
+    Point::new(side(sides[0], Axis::X), side(sides[1], Axis::Y))
 }
 
 fn keyword(text: &str) -> Option<&'static str> {

@@ -10,7 +10,7 @@ use crate::style::Style;
 use crate::units::{Axis, Units, mean_scale};
 use crate::vocabulary::NAMESPACE;
 use crate::xml::PlainAttribute;
-use crate::{shape, text};
+use crate::{shape, style, text};
 use kurbo::{Affine, BezPath, Size};
 use roxmltree::{Node, NodeId};
 use std::collections::HashSet;
@@ -164,7 +164,7 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
             place.hidden = false;
             if outermost {
                 // Opacity of the groups around belongs to those groups, not to copies.
-                Rc::make_mut(&mut place.style).forget_opacity();
+                Rc::make_mut(&mut place.style).forget_groups();
             }
         }
         let units = Units { viewport: place.viewport, em: place.style.font_size() };
@@ -225,6 +225,13 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
                 }
                 Ok(())
             }
+            "switch" => {
+                // Only the first that can be drawn is.
+                if let Some(node) = node.children().find(is_supported) {
+                    self.stack.push(Visit::One(Place { node, ..place }));
+                }
+                Ok(())
+            }
             "text" if is_drawn => self.text(&place),
             "text" => Ok(()),
             _ if !shape::is_shape(node) => {
@@ -234,6 +241,9 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
             _ if !is_drawn => Ok(()),
             _ => {
                 let path = shape::outline(node, units).map_err(|what| self.broken(node, &what))?;
+                if node.tag_name().name() == "image" {
+                    Rc::make_mut(&mut place.style).add_effect(style::PICTURE);
+                }
                 self.part(&place, path)
             }
         }
@@ -270,8 +280,11 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
             return self.outer_use.clone();
         }
         let id = place.node.plain("id").filter(|id| !id.is_empty());
-        let live =
-            id.map(|id| Live { id: id.to_owned(), frame: place.frame, inherited: place.inherited.css() });
+        let live = id.map(|id| Live {
+            id: id.to_owned(),
+            frame: place.frame,
+            inherited: place.inherited.inherited_css(),
+        });
         let inside = || place.node.ancestors().take_while(|&node| !self.gathering.is_innermost(node));
         let child = inside().last().map(|node| node.id());
         // Its own word, or that of a group around it; the form's is a parameter.
@@ -297,7 +310,17 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
             ));
             return Ok(());
         };
-        if self.used.contains(&target.id()) || node.ancestors().any(|ancestor| ancestor == target) {
+        let is_cycle =
+            self.used.contains(&target.id()) || node.ancestors().any(|ancestor| ancestor == target);
+        if is_cycle && self.gathering.is_form() && !self.gathering.is_marked_form() {
+            self.gathering.warn(format!(
+                "{}: the clone '{}' contains itself and is left out",
+                self.resolver.position(node),
+                self.resolver.reference(node)
+            ));
+            return Ok(());
+        }
+        if is_cycle {
             return Err(Error::new(
                 "clone-cycle",
                 format!("The clone '{}' contains itself", self.resolver.reference(node)),
@@ -336,6 +359,15 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
 
     fn text(&mut self, place: &Place<'a, 'i>) -> Result<(), Error> {
         let node = place.node;
+        let mut place = place.clone();
+        let mut paints = node.descendants().filter(|inner| inner.tag_name().name() == "tspan").map(|span| {
+            let units = Units { viewport: place.viewport, em: place.style.font_size() };
+            self.resolver.cascade.computed(span, &place.style, &units).css()
+        });
+        if paints.any(|paint| paint != place.style.css()) {
+            Rc::make_mut(&mut place.style).add_effect("paint of single words");
+        }
+        let place = &place;
         self.counts.texts += 1;
         let limit = self.resolver.limits.texts;
         let outlines = if self.counts.texts > limit {
@@ -404,6 +436,17 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
         )
         .at(self.resolver.position(node))
     }
+}
+
+/// True for a child of a `<switch>` that can be drawn: one for everybody.
+fn is_supported(node: &Node) -> bool {
+    let says = |name| node.plain(name).is_some_and(|text| !text.trim().is_empty());
+    let is_english =
+        |text: &str| text.split(',').any(|language| language.trim().to_ascii_lowercase().starts_with("en"));
+    node.is_element()
+        && !says("requiredExtensions")
+        && node.plain("systemLanguage").is_none_or(is_english)
+        && node.tag_name().name() != "foreignObject"
 }
 
 /// Content that is never drawn where it stands and holds no templates.

@@ -56,7 +56,9 @@ impl Pieces for PieceWriter<'_, '_> {
             if self.count > 0 {
                 let _ = write!(out, "{newline}</{prefix}g>");
             }
-            let _ = write!(out, "{newline}<{prefix}g id=\"{id}-g{}\">", self.count / SIBLINGS + 1);
+            let _ = write!(out, "{newline}<{prefix}g id=\"{id}-g{}\"", self.count / SIBLINGS + 1);
+            self.target.guard_group(&mut out, "");
+            out.push('>');
         }
         self.count += 1;
         let _ = write!(out, "{newline}<{prefix}path id=\"{id}-");
@@ -68,7 +70,7 @@ impl Pieces for PieceWriter<'_, '_> {
         if transform != Affine::IDENTITY {
             attribute(&mut out, "transform", &matrix(inverse * transform, MATRIX_DECIMALS));
         }
-        attribute(&mut out, "style", style);
+        attribute(&mut out, "style", &self.target.guard.shape(style));
         out.push_str(" d=\"");
         self.page.bytes.extend_from_slice(out.as_bytes());
     }

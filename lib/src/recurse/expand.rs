@@ -121,10 +121,14 @@ impl Expansion {
         let is_similar =
             (a * a + b * b - c * c - d * d).abs() + 2.0 * (a * c + b * d).abs() <= 1e-6 * size * size;
         let has_stroke = primitive.style.stroke_width().is_some();
-        let is_flat = !has_stroke || is_similar || self.fixed_strokes;
+        // A gradient goes along with the coordinates that it is defined in.
+        let is_flat =
+            !primitive.style.has_paint_server() && (!has_stroke || is_similar || self.fixed_strokes);
         let width = match (has_stroke, self.fixed_strokes) {
             (false, _) => 1.0,
-            (true, true) => primitive.base.determinant().abs().sqrt(),
+            (true, true) if is_flat => primitive.base.determinant().abs().sqrt(),
+            (true, true) => (primitive.base.determinant() / full.determinant()).abs().sqrt(),
+            (true, false) if !is_flat => 1.0,
             (true, false) if is_similar => size,
             // What the transform does to the stroke no width can say.
             (true, false) => 1.0,
@@ -221,7 +225,6 @@ impl Expansion {
 /// either lines alone, or a fill alone of one contour that does not cross itself.
 fn can_merge(style: &Style, path: &BezPath) -> bool {
     let is_opaque = |name: &str| style.get(name).is_none_or(|value| value.trim().parse() == Ok(1.0));
-    let is_plain = |name: &str| style.get(name).is_none_or(|paint| !paint.contains("url("));
     let subpaths = path.elements().iter().filter(|el| matches!(el, PathEl::MoveTo(_))).count();
     let has_stroke = style.stroke_width().is_some();
     let shape = match (style.is_filled(), has_stroke) {
@@ -234,7 +237,8 @@ fn can_merge(style: &Style, path: &BezPath) -> bool {
     shape
         && whole
         && ["fill-opacity", "stroke-opacity"].into_iter().all(is_opaque)
-        && ["fill", "stroke"].into_iter().all(is_plain)
+        && !style.has_paint_server()
+        && !style.has_markers()
 }
 
 /// True if a contour surely does not cross itself: it turns to one side only, once around.

@@ -3,6 +3,7 @@
 
 use kurbo::{Affine, BezPath, Point, Rect, Shape};
 use rinceau_format::{Error, Form, FormItem, Live, Style, When};
+use std::collections::BTreeSet;
 
 /// An entry of a display list.
 #[derive(Clone, Copy, Debug)]
@@ -81,6 +82,53 @@ impl Lists {
         Lists { lists, primitives }
     }
 
+    /// What the primitives of a form are drawn with that their copies as paths lack: of which object,
+    /// and what.
+    pub fn lost_effects(&self, root: usize) -> BTreeSet<(&str, &'static str)> {
+        let drawn = self.entries(root).filter_map(|entry| match *entry {
+            Entry::Draw(primitive) => Some(&self.primitives[primitive]),
+            Entry::Clone(..) => None,
+        });
+        drawn
+            .flat_map(|drawn| drawn.style.effects().iter().map(|&effect| (drawn.of.as_str(), effect)))
+            .collect()
+    }
+
+    /// The lists without images, which have no outline that could be drawn.
+    pub fn without_pictures(&self) -> Self {
+        let mut lists = self.clone();
+        for list in &mut lists.lists {
+            list.entries.retain(|entry| match *entry {
+                Entry::Draw(primitive) => !self.primitives[primitive].style.is_picture(),
+                Entry::Clone(..) => true,
+            });
+        }
+        lists
+    }
+
+    /// The list of a form, now the first, and those that it repeats.
+    pub fn of(&self, root: usize) -> Self {
+        let reached = self.reached(root);
+        let mut place = vec![None; self.lists.len()];
+        reached.iter().enumerate().for_each(|(new, &old)| place[old] = Some(new));
+        let mut primitives = Vec::new();
+        let mut lists = Vec::with_capacity(reached.len());
+        for &old in &reached {
+            let mut list = self.lists[old].clone();
+            for entry in &mut list.entries {
+                *entry = match *entry {
+                    Entry::Draw(primitive) => {
+                        primitives.push(self.primitives[primitive].clone());
+                        Entry::Draw(primitives.len() - 1)
+                    }
+                    Entry::Clone(other, by) => Entry::Clone(place[other].unwrap_or(0), by),
+                };
+            }
+            lists.push(list);
+        }
+        Lists { lists, primitives }
+    }
+
     /// True if a primitive is drawn where `is_last` tells whether it is the last generation.
     pub fn is_drawn(&self, primitive: usize, reach: Reach, is_last: bool) -> bool {
         match self.primitives[primitive].when {
@@ -142,12 +190,14 @@ impl Lists {
     /// A list and those that it repeats, each once; the list first.
     pub fn reached(&self, root: usize) -> Vec<usize> {
         let mut reached = vec![root];
+        let mut is_reached = vec![false; self.lists.len()];
+        is_reached[root] = true;
         let mut next = 0;
         while let Some(&list) = reached.get(next) {
             next += 1;
             for entry in &self.lists[list].entries {
                 if let Entry::Clone(other, _) = *entry
-                    && !reached.contains(&other)
+                    && !std::mem::replace(&mut is_reached[other], true)
                 {
                     reached.push(other);
                 }

@@ -94,7 +94,27 @@ pub fn generate(
         let frame = frame.and_then(|container| {
             container.outlines.iter().map(|outline| outline.path.bounding_box()).reduce(|a, b| a.union(b))
         });
-        let run = Run { params: &own, scene, lists: &lists, root, form, frame, name };
+        let own_lists;
+        let draws_paths = own.output != "clones" || own.sheet;
+        let mut of_run = &lists;
+        if draws_paths || own.colours != "drawn" {
+            let lost = lists.lost_effects(root);
+            for (of, effect) in &lost {
+                artwork.warnings.push(match effect {
+                    &"picture" => {
+                        format!("'{of}' is an image and left out; choose clones as result to keep it")
+                    }
+                    effect => {
+                        format!("'{of}' is drawn without its {effect}; choose clones as result to keep it")
+                    }
+                });
+            }
+            if lost.iter().any(|&(_, effect)| effect == "picture") {
+                own_lists = Arc::new(lists.without_pictures());
+                of_run = &own_lists;
+            }
+        }
+        let run = Run { params: &own, scene, lists: of_run, root, form, frame, name };
         run.draw(&mut artwork, progress)?;
     }
     Ok(artwork)
@@ -297,7 +317,7 @@ impl Run<'_> {
                 Step::TooLarge => too_large += 1,
                 Step::Draw(shape) => {
                     drawn += 1;
-                    for &p in &self.lists.primitives[shape.primitive].hull {
+                    for &p in &expansion.lists.primitives[shape.primitive].hull {
                         let p: Point = shape.pose * p;
                         bounds = Some(bounds.map_or(Rect::from_points(p, p), |bounds| bounds.union_pt(p)));
                     }
@@ -320,7 +340,7 @@ impl Run<'_> {
             // Writing takes longer than looking.
             const DEARER: f64 = 8.0;
             let seen = (drawn.max(entered) as f64 / DEARER).max(1.0);
-            reach.depth = self.lists.deepest(self.root, reach, seen).max(1);
+            reach.depth = expansion.lists.deepest(expansion.root, reach, seen).max(1);
         }
         let (drawn, entered) = (drawn as f64, entered as f64);
         Ok(Survey { bounds, drawn, entered, too_large, reach, complete: !is_late })

@@ -27,7 +27,7 @@ crate::params! {
         output: String = "output", "Result", Basic, Kind::Choice(&[("paths", "Paths"), ("clones", "Clones of the motif")]), "paths";
         #[doc = "Copies smaller than this are not repeated further. 0 repeats them to the last generation"]
         min_size: Length = "min-size", "Smallest copy", More, Kind::Length, "0";
-        #[doc = "Shapes and repeats at most: a form that would have more is refused, with the number of generations that would do"]
+        #[doc = "Shapes and repeats at most: a form that would have more is refused, with the number of generations that would do. Paths are 20 million at most, whatever this says"]
         most: f64 = "most", "Copies at most", More, Kind::Number { min: 1.0, max: 1e15 }, "2000000";
         #[doc = "Whether neighbours in paint order that look the same become one path, up to 200 copies each, where that changes no picture"]
         merge: bool = "merge", "Merge equal neighbours", More, Kind::Switch, "true";

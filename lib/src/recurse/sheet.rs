@@ -39,6 +39,7 @@ pub(super) fn draw(
     }
     let reach = expansion.reach;
     let depth = run.lists.deepest(run.root, reach, MOST).max(1);
+    let own_lists = run.lists.of(run.root);
     let cell = Vec2::new(frame.width() / CHANGES as f64, frame.height() / clones.len() as f64);
     let mut group = Group { name: run.name.clone(), ..Group::default() };
     for (row, &entry) in clones.iter().enumerate() {
@@ -48,9 +49,10 @@ pub(super) fn draw(
                 artwork.groups.push(group);
                 return Ok(());
             }
-            let lists = Arc::new(changed(run.lists, run.root, entry, column, run.params.change));
+            let lists = Arc::new(changed(&own_lists, 0, entry, column, run.params.change));
             let own = Expansion {
                 lists,
+                root: 0,
                 reach: Reach { depth, ..reach },
                 place: Affine::IDENTITY,
                 ..expansion.clone()
