@@ -45,7 +45,7 @@ pub use number::{decimals_for, path_data, write_number};
 pub use recipe::Recipe;
 pub use scene::{
     Container, Element, Example, Fixed, Form, FormItem, Guide, Live, Outline, Primitive, Reference,
-    Replication, Scene, Seed, Selection, Source, Stroke, Template, When,
+    Replication, RuleSet, Scene, Seed, Selection, Source, Stroke, Template, When,
 };
 pub use shape::arc_to_cubics;
 pub use style::{FillRule, Style, rgb};

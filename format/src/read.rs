@@ -13,9 +13,10 @@ mod walk;
 use crate::document::forms_of_step;
 use crate::error::Error;
 use crate::limits::Limits;
-use crate::scene::{Scene, Selection};
+use crate::scene::{RuleSet, Scene, Selection};
 use crate::style::Style;
 use crate::vocabulary::NAMESPACE;
+use crate::xml::PlainAttribute;
 
 /// Reads every annotated (or selected) object of a parsed drawing.
 ///
@@ -35,7 +36,20 @@ pub(crate) fn scene(
         selected.push(form.unwrap_or(node));
     }
     resolver.mark(&selected);
-    walk::walk(&resolver, selected.iter().map(roxmltree::Node::id).collect())
+    let mut scene = walk::walk(&resolver, selected.iter().map(roxmltree::Node::id).collect())?;
+    scene.rules = rule_sets(xml);
+    Ok(scene)
+}
+
+/// The rule sets of a drawing, wherever they stand.
+fn rule_sets(xml: &roxmltree::Document) -> Vec<RuleSet> {
+    let is_rules = |node: &roxmltree::Node| node.tag_name() == (NAMESPACE, "rules").into();
+    let rule_set = |node: roxmltree::Node| {
+        let name = node.plain("name").or_else(|| node.plain("id")).unwrap_or("rules").trim().to_owned();
+        let text = node.children().filter_map(|child| child.text()).collect();
+        RuleSet { name, text }
+    };
+    xml.descendants().filter(is_rules).map(rule_set).collect()
 }
 
 pub(crate) use forms::shift_of_use;

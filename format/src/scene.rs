@@ -45,6 +45,8 @@ pub struct Scene {
     pub boundaries: Vec<Guide>,
     /// Strokes that paint a growth area.
     pub sprays: Vec<Stroke>,
+    /// Rule sets that the drawing carries.
+    pub rules: Vec<RuleSet>,
     /// What was read with a doubt, each a sentence with its position.
     pub warnings: Vec<String>,
 }
@@ -120,6 +122,15 @@ pub struct Fixed {
     pub source: Source,
     /// Its shapes in drawing order.
     pub parts: Vec<Part>,
+}
+
+/// A rule set.
+#[derive(Clone, Debug)]
+pub struct RuleSet {
+    /// Its name, or that of its file.
+    pub name: String,
+    /// Its text.
+    pub text: String,
 }
 
 /// A point-like object: the middle of its bounding box.

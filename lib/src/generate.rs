@@ -1,6 +1,7 @@
 //! The generators by name, and the one place that chooses between them.
 
 use crate::arrange;
+use crate::grow;
 use crate::pack;
 use crate::params::{ParamSpec, Values};
 use crate::progress::Progress;
@@ -43,6 +44,16 @@ pub const GENERATORS: &[Generator] = &[
         sources: containers,
         run: |values, scene, rng, progress| {
             pack::generate(&pack::Params::from_values(values), scene, rng, progress)
+        },
+    },
+    Generator {
+        name: "grow",
+        title: "Grow by rules",
+        about: "Grow ornament into shapes by rules: spirals, vines with blossoms, willow leaves, dots",
+        table: grow::Params::TABLE,
+        sources: containers,
+        run: |values, scene, rng, progress| {
+            grow::generate(&grow::Params::from_values(values), scene, rng, progress)
         },
     },
     Generator {

@@ -6,6 +6,7 @@
 //! | generator | from |
 //! |---|---|
 //! | [`arrange`] | Ijiri, Mech, Igarashi, Miller: *An example-based procedural system for element arrangement*, 2008 |
+//! | [`grow`] | Wong, Zongker, Salesin: *Computer-generated floral ornament*, 1998 |
 //! | [`pack`] | Saputra, Kaplan, Asente, Mech: *FLOWPAK: Flow-based ornamental element packing*, 2017 |
 //! | [`recurse`] | Carlson, Woodbury: *Hands-on exploration of recursive forms*, 1990 |
 //! | [`vine`] | Xu, Mould: *Magnetic curves*, 2009, and an article that adds clip art |
@@ -14,6 +15,7 @@ pub mod arrange;
 pub mod field;
 pub mod generate;
 pub mod geom;
+pub mod grow;
 pub mod pack;
 pub mod palette;
 pub mod params;

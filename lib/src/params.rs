@@ -36,6 +36,8 @@ pub enum Kind {
     Choice(&'static [(&'static str, &'static str)]),
     /// Names separated by spaces; a dialog offers some, each with what it calls it.
     Names(&'static [(&'static str, &'static str)]),
+    /// A rule file, or the name of rules; a dialog offers some, each with what it calls it.
+    Rules(&'static [(&'static str, &'static str)]),
     /// Yes or no.
     Switch,
 }
@@ -159,7 +161,8 @@ impl ParamSpec {
             Kind::Switch if matches!(value, "true" | "false") => Ok(()),
             Kind::Switch => wrong("true or false".into()),
             Kind::Names(_) if value.is_empty() => wrong("at least one name".into()),
-            Kind::Names(_) => Ok(()),
+            Kind::Rules(_) if value.is_empty() => wrong("a name or a file of rules".into()),
+            Kind::Names(_) | Kind::Rules(_) => Ok(()),
         }
     }
 }

@@ -151,6 +151,7 @@ fn parameter(spec: &'static ParamSpec) -> Arg {
         Kind::Numbers { .. } => "NUMBER,...",
         Kind::Choice(_) => "CHOICE",
         Kind::Names(_) => "NAMES",
+        Kind::Rules(_) => "FILE|NAME",
         Kind::Switch => "true|false",
     };
     Arg::new(spec.name)
@@ -165,7 +166,7 @@ fn parameter(spec: &'static ParamSpec) -> Arg {
 /// The help text with values and default.
 pub fn help(spec: &ParamSpec) -> String {
     let values = match spec.kind {
-        Kind::Choice(choices) | Kind::Names(choices) => {
+        Kind::Choice(choices) | Kind::Names(choices) | Kind::Rules(choices) => {
             let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
             format!(" ({})", names.join(", "))
         }

@@ -122,6 +122,11 @@ impl Call {
         })?;
         let seed = self.take("seed").and_then(|text| text.parse().ok()).unwrap_or(1);
         let seconds: f64 = self.take("time-limit").and_then(|text| text.parse().ok()).unwrap_or(LONGEST_RUN);
+        // A file goes before the pattern beside it.
+        if let Some(file) = self.take("rules-file").filter(|file| !file.trim().is_empty()) {
+            self.params.retain(|(name, _)| name != "rules");
+            self.params.push(("rules".to_owned(), file));
+        }
         let unit = self.take("unit").filter(|unit| unit != "document").unwrap_or_default();
         let mut values = Values::default();
         for (name, value) in &mut self.params {

@@ -41,6 +41,7 @@ pub fn install(dir: Option<&Path>) -> Result<(), Error> {
     for (name, content) in inx::all(program) {
         output::write(Some(&folder.join(name)), content.as_bytes())?;
     }
+    output::write(Some(&folder.join(inx::PATTERNS.0)), inx::PATTERNS.1)?;
     println!("Installed in {}. Start Inkscape again and look under Extensions > Ornament.", folder.display());
     Ok(())
 }

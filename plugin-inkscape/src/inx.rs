@@ -16,6 +16,9 @@ const UNITS: &[(&str, &str)] =
 const PAGES: [(Page, &str, &str); 3] =
     [(Page::Basic, "basic", "Basic"), (Page::More, "more", "More"), (Page::Curves, "curves", "Curves")];
 
+/// The picture of the built-in patterns, beside the descriptions: name and content.
+pub const PATTERNS: (&str, &[u8]) = ("grow-patterns.png", include_bytes!("../inx/grow-patterns.png"));
+
 /// Roles in the menu, with what the menu calls them.
 const MARKS: &[(&str, &str)] = &[
     ("container", "Container (a shape to fill)"),
@@ -24,8 +27,8 @@ const MARKS: &[(&str, &str)] = &[
     ("element", "Element (a group to fill with)"),
     ("spine", "Spine (from an element's base to its tip)"),
     ("fixed-spine", "Fixed spine (a line an element must lie along)"),
-    ("stem", "Stem (the main stem of a vine)"),
-    ("seed", "Seed (where a vine starts)"),
+    ("stem", "Stem (a main stem, that vines and patterns grow from)"),
+    ("seed", "Seed (where growth starts)"),
     ("form", "Form (a motif with clones of itself)"),
     ("clone", "Clone (a copy in a form, where it goes on)"),
     ("reference", "Reference (an example that is continued)"),
@@ -194,6 +197,13 @@ fn dialog(generator: &Generator, binary: &str) -> String {
         }
         inx.0.end_element();
     }
+    if generator.name == "grow" {
+        inx.0.start_element("page");
+        inx.0.write_attribute("name", "patterns");
+        inx.0.write_attribute("gui-text", "Patterns");
+        inx.text("image", &[], PATTERNS.0);
+        inx.0.end_element();
+    }
     inx.0.start_element("page");
     inx.0.write_attribute("name", "help");
     inx.0.write_attribute("gui-text", "Help");
@@ -238,6 +248,13 @@ fn help(generator: &Generator) -> &'static [&'static str] {
             "Elements that stand for the same thing are clones of each other, look the same, or have one name as rinceau:symbol.",
             "Elements are clones: change one in the layer's symbols, and all follow.",
         ],
+        "grow" => &[
+            "Select a closed shape and press Apply: the pattern grows into it, into the largest empty place first.",
+            "Mark small dots as seeds to say where growth starts. With fixed blossoms, or a stem of your own, it grows around them and along it.",
+            "Draw your own blossom or leaf, group it with a straight spine, mark it as element, and name it as the pattern does (rinceau:symbol): it is used instead.",
+            "A symmetry grows everything together with its images: rosettes in the shape, bands and wallpapers that repeat without a seam in the rectangle around it.",
+            "Rules of your own are a text file (docs/rules.md), or text in the drawing's metadata.",
+        ],
         _ => &[],
     }
 }
@@ -275,6 +292,21 @@ fn parameter(inx: &mut Inx, spec: &ParamSpec) {
         }
         Kind::Choice(choices) | Kind::Names(choices) => {
             combo(inx, spec.name, spec.label, spec.help, (choices, spec.default));
+        }
+        Kind::Rules(choices) => {
+            combo(inx, spec.name, spec.label, spec.help, (choices, spec.default));
+            inx.0.start_element("param");
+            let file = format!("{}-file", spec.name);
+            common(
+                inx,
+                &file,
+                "path",
+                "Or a file of rules:",
+                "Growth rules of your own, instead of a pattern",
+            );
+            inx.0.write_attribute("mode", "file");
+            inx.0.write_attribute("filetypes", "rules,txt");
+            inx.0.end_element();
         }
         Kind::Switch => inx.text(
             "param",
@@ -354,6 +386,7 @@ mod tests {
             let committed = std::fs::read_to_string(folder.join(name)).unwrap_or_default();
             assert_eq!(&committed, content, "{name} is stale: run the tests with RINCEAU_BLESS=1");
         }
-        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), files.len());
+        // And the picture of the patterns.
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), files.len() + 1);
     }
 }

@@ -2,9 +2,10 @@
 
 use crate::{check, install, output, progress, update};
 use clap::ArgMatches;
+use rinceau::params::Kind;
 use rinceau::tack::Tacked;
 use rinceau::{Error, GENERATORS, Generator, Values};
-use rinceau_format::{Artwork, Document, Recipe, Role, Scene, Selection};
+use rinceau_format::{Artwork, Document, Recipe, Role, RuleSet, Scene, Selection};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -54,7 +55,8 @@ pub fn generate(job: Job) -> Result<Done, Error> {
     job.progress.begin("read");
     let document = Document::from_bytes(job.bytes)?;
     let selection = Selection { ids: job.ids };
-    let scene = document.scene(&selection)?;
+    let mut scene = document.scene(&selection)?;
+    add_rules(&mut scene, job.generator, &job.values)?;
     job.progress.limit(job.time_limit);
     let artwork =
         rinceau::generate(job.generator, &job.values, &scene, job.seed, job.progress.as_progress())?;
@@ -72,6 +74,27 @@ pub fn generate(job: Job) -> Result<Done, Error> {
     };
     let document = document.with_steps(&artwork.steps, &recipe)?;
     Ok(Done { document, scene, artwork, recipe })
+}
+
+/// Reads the rule file that a run asks for, if it is neither built in nor part of the drawing.
+fn add_rules(scene: &mut Scene, generator: &Generator, values: &Values) -> Result<(), Error> {
+    for spec in generator.table {
+        let Kind::Rules(names) = spec.kind else { continue };
+        let name = values.text(spec);
+        let is_known = names.iter().any(|(known, _)| *known == name)
+            || scene.rules.iter().any(|rules| rules.name == name);
+        if !is_known && (name.ends_with(".rules") || Path::new(&name).is_file()) {
+            let text = std::fs::read_to_string(&name).map_err(|error| {
+                Error::new(
+                    "rules-file",
+                    format!("The rules '{name}' cannot be read: {error}"),
+                    "Check the name of the file; it has to be a text in UTF-8",
+                )
+            })?;
+            scene.rules.push(RuleSet { name, text });
+        }
+    }
+    Ok(())
 }
 
 /// Moves objects by tacks.

@@ -138,3 +138,55 @@ fn every_arrangement() {
     }
     insta::assert_snapshot!(table);
 }
+
+#[test]
+fn a_small_growth_in_full() {
+    let svg = r##"<svg xmlns="http://www.w3.org/2000/svg" xmlns:rinceau="urn:rinceau:1" viewBox="0 0 120 60">
+  <metadata><rinceau:rules name="chain">
+element seed: point
+element link: circle, order = 0
+element tie: linesegment
+let links = 0;
+rule seed -> link first { parent.sterile = true; first.set(parent, 3); }
+rule link -> tie bar, link next {
+    if goal.radius &lt; 4.0 { return FAILURE; }
+    links += 1;
+    next.order = links;
+    let far = min(distance(parent, goal), 12);
+    next.set(parent.center.offset(goal.center - parent.center, far), 2.5);
+    bar.set(parent, next);
+}
+look tie: art outline, width 0.8
+look link: art outline, by order
+</rinceau:rules></metadata>
+  <rect id="panel" class="rinceau-container" x="2" y="2" width="116" height="56"/>
+  <circle id="stone" class="rinceau-fixed" cx="96" cy="18" r="6" fill="#777777"/>
+</svg>
+"##;
+    let (document, _) = drawn("grow", svg.as_bytes().to_vec(), &[]);
+    insta::assert_snapshot!(document.text());
+}
+
+#[test]
+fn every_growth() {
+    let mut table = String::new();
+    for path in samples_of("grow") {
+        let (document, artwork) = drawn("grow", std::fs::read(&path).unwrap(), &[]);
+        let count = |name: &str| artwork.counts[name];
+        table += &format!(
+            "{:20} {:5} elements in {:5} steps, {:5} in vain, {:016x}\n",
+            path.file_stem().unwrap().to_string_lossy(),
+            count("elements"),
+            count("steps"),
+            count("failed"),
+            fingerprint(&document.to_bytes()),
+        );
+        assert!(
+            artwork.complete && artwork.warnings.is_empty(),
+            "{}: {:?}",
+            path.display(),
+            artwork.warnings
+        );
+    }
+    insta::assert_snapshot!(table);
+}

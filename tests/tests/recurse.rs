@@ -203,8 +203,12 @@ fn rendered(svg: &str) -> Vec<(String, Rect)> {
                 usvg::Node::Group(group) => walk(group, out),
                 usvg::Node::Path(path) => {
                     let paint = |fill: Option<&usvg::Paint>| format!("{fill:?}");
-                    let paint = paint(path.fill().map(usvg::Fill::paint))
-                        + &paint(path.stroke().map(usvg::Stroke::paint));
+                    let (fill, stroke) = (path.fill(), path.stroke());
+                    let paint = format!(
+                        "{}{}",
+                        paint(fill.map(usvg::Fill::paint)),
+                        paint(stroke.map(usvg::Stroke::paint))
+                    );
                     let r = path.abs_stroke_bounding_box();
                     out.push((
                         paint,

@@ -246,7 +246,7 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
             Some(Role::Form) => self.form(done),
             Some(Role::Clone) => self.close_clone(done),
             Some(Role::Reference) => self.reference(done)?,
-            // Read by the generators that use them, once they do.
+            // Rules are text in the metadata, not an object.
             Some(Role::Rules) => {}
             // A selected group with clones of its own shapes is a form without a mark, for those who
             // look for one, and a shape for others.

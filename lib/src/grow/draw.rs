@@ -1,0 +1,391 @@
+//! From proxies to pictures (000 3.2, 4; checklist W-064, W-084 to W-086, W-117): artwork bent along
+//! lines as skeletal strokes, or laid on discs; growth does not know of it.
+
+mod art;
+
+use super::growth::{Grown, View};
+use super::params::Params;
+use super::piece::Proxy;
+use super::rules::Look;
+use super::world::{Element, World};
+use crate::palette::palette;
+use art::Art;
+pub(super) use art::Arts;
+use kurbo::{Affine, BezPath, PathEl, Point, Rect, Shape, Vec2};
+use rinceau_format::{Error, Group, Item, Part, Style};
+
+/// Width of an outline in units of the rules.
+const OUTLINE: f64 = 0.3;
+
+/// How the elements of one container are drawn.
+pub(super) struct Drawing<'a> {
+    pub looks: &'a [Look],
+    pub params: &'a Params,
+    /// Length of a unit of the rules.
+    pub unit: f64,
+    /// Of the container, to choose colours by.
+    pub fill: Option<&'a str>,
+    pub arts: &'a Arts,
+}
+
+/// Lines that are drawn as one, or something round.
+struct Strand {
+    /// The elements it is made of, the first for its colour.
+    element: usize,
+    path: BezPath,
+    /// For something round: its disc, and the direction it grew in.
+    disc: Option<(Point, f64, f64)>,
+    /// Half the width at equal steps along, for an element that is between two lines.
+    widths: Option<Vec<f64>>,
+}
+
+impl Drawing<'_> {
+    /// Sublayers for an ornament.
+    ///
+    /// Errors: an artwork that is called for and does not exist.
+    pub fn groups(&self, world: &World, grown: &Grown) -> Result<Vec<Group>, Error> {
+        let mut elements = Group { name: "elements".into(), ..Group::default() };
+        let of_kind = |kind: usize| self.looks.iter().find(|look| look.kind == kind);
+        // In the order of the looks; what has none comes first.
+        let mut kinds: Vec<usize> = (0..world.kinds.len()).filter(|&kind| of_kind(kind).is_none()).collect();
+        kinds.extend(self.looks.iter().map(|look| look.kind));
+        kinds.dedup();
+        for kind in kinds {
+            let name = &world.kinds[kind].name;
+            if name == "seed" && of_kind(kind).is_none() {
+                continue;
+            }
+            let plain = Look {
+                kind,
+                art: "outline".into(),
+                width: 0.0,
+                size: 1.0,
+                tone: 1,
+                by: String::new(),
+                thick: String::new(),
+                join: false,
+            };
+            let look = of_kind(kind).unwrap_or(&plain);
+            self.kind(world, look, &mut elements)?;
+        }
+        let mut groups = vec![elements];
+        groups.push(self.proxies(world));
+        if let Some(view) = &grown.view {
+            groups.push(self.view(world, view));
+        }
+        Ok(groups)
+    }
+
+    /// Errors: a look calls for artwork that does not exist.
+    pub fn check(&self) -> Result<(), Error> {
+        let is_art = |look: &&Look| !matches!(look.art.as_str(), "none" | "outline" | "fill");
+        self.looks.iter().filter(is_art).try_for_each(|look| self.arts.named(&look.art).map(|_| ()))
+    }
+
+    fn kind(&self, world: &World, look: &Look, group: &mut Group) -> Result<(), Error> {
+        let arts = self.arts;
+        let name = world.kinds[look.kind].name.clone();
+        let style = self.params.style.as_str();
+        let drawn = arts.drawn(&name);
+        let largest = self.largest(world, look);
+        for strand in strands(world, look) {
+            let is_line = strand.disc.is_none();
+            let art = match (drawn, style) {
+                (Some(art), "drawn") => Some(art),
+                (_, "outline") => None,
+                (_, "drawn") => match look.art.as_str() {
+                    "none" => continue,
+                    "outline" | "fill" => None,
+                    art => Some(arts.named(art)?),
+                },
+                // Another stroke for lines that are one stroke; leaves and blossoms stay.
+                (_, style) if is_line && strand.widths.is_none() && (look.join || look.art == "outline") => {
+                    Some(arts.named(style)?)
+                }
+                _ => match (drawn, look.art.as_str()) {
+                    (Some(art), _) => Some(art),
+                    (_, "none") => continue,
+                    (_, "outline" | "fill") => None,
+                    (_, art) => Some(arts.named(art)?),
+                },
+            };
+            let parts = match art {
+                Some(art) => self.bent(&strand, look, art, &world.elements[strand.element], largest, world),
+                None => self.plain(&strand, look, &world.elements[strand.element], largest, world),
+            };
+            for &image in world.images() {
+                let moved: Vec<Part> = parts.iter().map(|part| self.placed(part, image)).collect();
+                if is_seen(&moved, scaled(world.bounds, self.unit), world.images().len()) {
+                    group.items.push(Item::new(name.clone(), moved));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A part in its place in the drawing.
+    fn placed(&self, part: &Part, image: Affine) -> Part {
+        let to_user = Affine::scale(self.unit);
+        let mut path = part.path.clone();
+        path.apply_affine(to_user * image);
+        Part { path, transform: Affine::IDENTITY, style: part.style.clone() }
+    }
+
+    /// The largest number that colours go by.
+    fn largest(&self, world: &World, look: &Look) -> f64 {
+        let of_kind = world.elements.iter().filter(|element| element.kind == look.kind);
+        of_kind.filter_map(|element| field(world, element, &look.by)).fold(0.0, f64::max)
+    }
+
+    fn colour(&self, look: &Look, element: &Element, largest: f64, world: &World) -> Option<String> {
+        let value = field(world, element, &look.by)?;
+        (look.tone == 0).then(|| rainbow(if largest > 0.0 { value / largest } else { 0.0 }))
+    }
+
+    fn tone(&self, look: &Look, shift: usize) -> &'static str {
+        palette(&self.params.palette, self.fill)[(look.tone.max(1) - 1 + shift) % 3]
+    }
+
+    /// Artwork along a line or on a disc.
+    fn bent(
+        &self,
+        strand: &Strand,
+        look: &Look,
+        art: &Art,
+        element: &Element,
+        largest: f64,
+        world: &World,
+    ) -> Vec<Part> {
+        let colour = self.colour(look, element, largest, world);
+        let paths = match strand.disc {
+            Some((center, radius, angle)) => art.round(center, radius * look.size, angle),
+            None => {
+                let thick = field(world, element, &look.thick).unwrap_or(1.0).max(0.0);
+                art.along(&strand.path, look.width * thick, strand.widths.as_deref())
+            }
+        };
+        let painted = |(path, style): (BezPath, &Style)| {
+            let mut style = style.scaled(self.unit, 3);
+            if art.builtin {
+                let tone = match style.get("fill") {
+                    Some("#111111") => Some(colour.clone().unwrap_or_else(|| self.tone(look, 0).to_owned())),
+                    Some("#555555") => Some(self.tone(look, 1).to_owned()),
+                    Some("#999999") => Some(self.tone(look, 2).to_owned()),
+                    Some("#dddddd") => Some("#f3e3bd".to_owned()),
+                    _ => None,
+                };
+                if let Some(tone) = tone {
+                    style.set("fill", &tone);
+                }
+            }
+            Part { path, transform: Affine::IDENTITY, style }
+        };
+        paths.into_iter().map(painted).collect()
+    }
+
+    /// The shapes themselves, as lines or filled.
+    fn plain(
+        &self,
+        strand: &Strand,
+        look: &Look,
+        element: &Element,
+        largest: f64,
+        world: &World,
+    ) -> Vec<Part> {
+        let colour = self.colour(look, element, largest, world);
+        let colour = colour.unwrap_or_else(|| self.tone(look, 0).to_owned());
+        let style = if look.art == "fill" && self.params.style != "outline" {
+            Style::filled(&colour)
+        } else {
+            line(&colour, if look.width > 0.0 { look.width } else { OUTLINE } * self.unit)
+        };
+        vec![Part { path: strand.path.clone(), transform: Affine::IDENTITY, style }]
+    }
+
+    /// Every proxy as an outline, hidden.
+    fn proxies(&self, world: &World) -> Group {
+        let mut group = Group { name: "proxies".into(), hidden: true, ..Group::default() };
+        let style = line("#ff0000", 0.15 * self.unit);
+        for element in &world.elements[..world.placed] {
+            let mut path = BezPath::new();
+            let shapes = element.proxies.iter().flatten().filter(|proxy| !matches!(proxy, Proxy::Point(_)));
+            shapes.for_each(|proxy| path.extend(proxy.path()));
+            if !path.is_empty() {
+                path.apply_affine(Affine::scale(self.unit));
+                let part = Part { path, transform: Affine::IDENTITY, style: style.clone() };
+                group.items.push(Item::new(world.kinds[element.kind].name.clone(), vec![part]));
+            }
+        }
+        group
+    }
+
+    /// How growth looked for room at one step (000 Figure 8): what was there in red, circles that
+    /// might be chosen in yellow, excluded ones in green, the chosen one dashed in blue, and the
+    /// candidates thick in purple.
+    fn view(&self, world: &World, view: &View) -> Group {
+        let mut group = Group { name: "debug".into(), ..Group::default() };
+        let mut add = |name: &str, mut path: BezPath, style: Style| {
+            path.apply_affine(Affine::scale(self.unit));
+            group.items.push(Item::new(name, vec![Part { path, transform: Affine::IDENTITY, style }]));
+        };
+        let disc = |center: Point, radius: f64| kurbo::Circle::new(center, radius).to_path(1e-3);
+        for circle in &view.eligible {
+            let mut style = Style::filled("#ffd800");
+            style.set("fill-opacity", "0.25");
+            style.set("stroke", "#b89a00");
+            style.set("stroke-width", &format!("{:.4}", 0.1 * self.unit));
+            add("eligible", disc(circle.center, circle.radius), style);
+        }
+        for &at in &view.excluded {
+            add("excluded", disc(at, 0.4), Style::filled("#1a9a3a"));
+        }
+        for (number, element) in world.elements[..view.placed].iter().enumerate() {
+            let is_candidate = view.candidates.contains(&(number as u32));
+            let mut path = BezPath::new();
+            element.proxies.iter().flatten().for_each(|proxy| path.extend(proxy.path()));
+            let style = match is_candidate {
+                true => line("#8a2be2", 0.8 * self.unit),
+                false => line("#e02020", 0.2 * self.unit),
+            };
+            add(if is_candidate { "candidate" } else { "placed" }, path, style);
+        }
+        if let Some(circle) = view.chosen {
+            let mut style = line("#1040ff", 0.4 * self.unit);
+            style.set("stroke-dasharray", &format!("{:.4} {:.4}", 1.2 * self.unit, 0.8 * self.unit));
+            add("chosen", disc(circle.center, circle.radius), style);
+        }
+        group
+    }
+}
+
+fn line(colour: &str, width: f64) -> Style {
+    let mut style = Style::filled("none");
+    style.set("stroke", colour);
+    style.set("stroke-width", &format!("{width:.4}"));
+    style.set("stroke-linecap", "round");
+    style.set("stroke-linejoin", "round");
+    style
+}
+
+/// A field as a number.
+fn field(world: &World, element: &Element, name: &str) -> Option<f64> {
+    let place = world.kinds[element.kind].fields.iter().position(|(field, _)| field == name)?;
+    let value = &element.fields[place];
+    value.as_float().ok().or_else(|| value.as_int().ok().map(|n| n as f64))
+}
+
+/// From red, the oldest, to purple (000 Figure 14).
+fn rainbow(share: f64) -> String {
+    const PURPLE: f64 = 280.0;
+    let hue = PURPLE * share.clamp(0.0, 1.0) / 60.0;
+    // Lower in yellow and cyan, which are glaring otherwise.
+    let (value, chroma) = (0.82, 0.66);
+    let x = chroma * (1.0 - (hue % 2.0 - 1.0).abs());
+    let (r, g, b) = match hue as usize {
+        0 => (chroma, x, 0.0),
+        1 => (x, chroma, 0.0),
+        2 => (0.0, chroma, x),
+        3 => (0.0, x, chroma),
+        _ => (x, 0.0, chroma),
+    };
+    let byte = |c: f64| ((c + value - chroma) * 255.0).round().clamp(0.0, 255.0) as u8;
+    format!("#{:02x}{:02x}{:02x}", byte(r), byte(g), byte(b))
+}
+
+/// What is drawn of a type: lines that continue each other are one if they are to be joined.
+fn strands(world: &World, look: &Look) -> Vec<Strand> {
+    let mut strands: Vec<(u32, Strand)> = Vec::new();
+    for (number, element) in world.elements[..world.placed].iter().enumerate() {
+        if element.kind != look.kind {
+            continue;
+        }
+        let lines: Vec<&Proxy> = element.proxies.iter().flatten().filter(|proxy| proxy.is_line()).collect();
+        if let [a, b] = lines[..]
+            && let Some(strand) = between(number, a, b)
+        {
+            strands.push((element.firing, strand));
+            continue;
+        }
+        for proxy in element.proxies.iter().flatten() {
+            let disc = match proxy {
+                Proxy::Circle(center, radius) => {
+                    Some((*center, *radius, grown_towards(world, element, *center)))
+                }
+                Proxy::Point(_) => continue,
+                _ => None,
+            };
+            let path = proxy.path();
+            let goes_on = look.join && proxy.is_line();
+            if let Some((firing, last)) = strands.last_mut()
+                && goes_on
+                && *firing == element.firing
+                && last.disc.is_none()
+                && end_of(&last.path).is_some_and(|end| end.distance(proxy.point(0.0)) < 1e-6)
+            {
+                last.path.extend(path.elements().iter().skip(1).copied());
+                continue;
+            }
+            strands.push((element.firing, Strand { element: number, path, disc, widths: None }));
+        }
+    }
+    strands.into_iter().map(|(_, strand)| strand).collect()
+}
+
+/// An element between two lines from one point to another: their middle, and its widths.
+fn between(element: usize, a: &Proxy, b: &Proxy) -> Option<Strand> {
+    let size = a.point(0.0).distance(a.point(1.0));
+    let meets = |t: f64| a.point(t).distance(b.point(t)) < 1e-6 * (1.0 + size);
+    if !(meets(0.0) && meets(1.0)) {
+        return None;
+    }
+    const STEPS: usize = 16;
+    let (mut path, mut widths) = (BezPath::new(), Vec::with_capacity(STEPS + 1));
+    for i in 0..=STEPS {
+        let t = i as f64 / STEPS as f64;
+        let (p, q) = (a.point(t), b.point(t));
+        let middle = p.midpoint(q);
+        if i == 0 {
+            path.move_to(middle)
+        } else {
+            path.line_to(middle)
+        }
+        widths.push(0.5 * p.distance(q));
+    }
+    Some(Strand { element, path, disc: None, widths: Some(widths) })
+}
+
+/// The angle in which something has grown: away from its parent.
+fn grown_towards(world: &World, element: &Element, at: Point) -> f64 {
+    let parent = world.elements.get(element.parent as usize);
+    let from = parent.and_then(|parent| parent.proxies.iter().flatten().next());
+    let away = from.map_or(Vec2::new(0.0, -1.0), |proxy| {
+        let from = if proxy.is_line() { proxy.point(1.0) } else { proxy.start() };
+        at - from
+    });
+    if away.hypot() < 1e-9 { 0.0 } else { libm::atan2(away.y, away.x) }
+}
+
+fn end_of(path: &BezPath) -> Option<Point> {
+    path.elements().iter().rev().find_map(PathEl::end_point)
+}
+
+fn is_seen(parts: &[Part], window: Rect, images: usize) -> bool {
+    images == 1 || parts.iter().any(|part| part.path.bounding_box().overlaps(window))
+}
+
+fn scaled(rect: Rect, by: f64) -> Rect {
+    Rect::new(rect.x0 * by, rect.y0 * by, rect.x1 * by, rect.y1 * by)
+}
+
+/// Sublayers of the same name become one.
+pub(super) fn merged(groups: Vec<Group>) -> Vec<Group> {
+    let mut merged: Vec<Group> = Vec::new();
+    for group in groups {
+        match merged.iter_mut().find(|known| known.name == group.name) {
+            Some(known) => known.items.extend(group.items),
+            None => merged.push(group),
+        }
+    }
+    merged.retain(|group| !group.items.is_empty());
+    merged
+}

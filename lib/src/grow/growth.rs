@@ -1,0 +1,141 @@
+//! The main loop (000 4.1, checklist W-061, W-066, W-090 to W-105): find the largest empty circle,
+//! let the elements near it try their rules, go on.
+
+use super::rules::{Applied, Rules, State};
+use super::space::Circle;
+use super::world::Candidate;
+use crate::progress::Progress;
+use kurbo::Point;
+use rinceau_format::Error;
+use std::cell::RefCell;
+use std::rc::Rc;
+
+/// Elements that may try to grow into one circle, at most.
+const MOST_CANDIDATES: usize = 24;
+
+/// What the loop goes by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Settings {
+    /// How far candidates may be from a circle, in its radii (the paper's epsilon, which has no
+    /// value there).
+    pub reach: f64,
+    /// Smaller circles are not tried.
+    pub smallest: f64,
+    pub most: usize,
+    /// The step whose choice is to be shown; 0 for none.
+    pub debug: usize,
+}
+
+/// What one step looked like (000 Figure 8).
+#[derive(Clone, Debug, Default)]
+pub(super) struct View {
+    pub chosen: Option<Circle>,
+    pub candidates: Vec<u32>,
+    /// Other circles that might have been chosen.
+    pub eligible: Vec<Circle>,
+    /// Middles of those that are excluded.
+    pub excluded: Vec<Point>,
+    /// Elements that were there already.
+    pub placed: usize,
+}
+
+/// How a run went.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Grown {
+    /// Applications of rules that placed something.
+    pub steps: usize,
+    /// Circles that nothing could grow into.
+    pub failed: usize,
+    pub complete: bool,
+    /// True if it ended because there were as many elements as allowed.
+    pub full: bool,
+    pub view: Option<View>,
+}
+
+/// Grows until there is no room that anything can grow into.
+///
+/// Errors: those of the rules.
+pub(super) fn grow(
+    rules: &mut Rules,
+    shared: &Rc<RefCell<State>>,
+    settings: &Settings,
+    progress: &mut dyn Progress,
+) -> Result<Grown, Error> {
+    let mut grown = Grown { complete: true, ..Grown::default() };
+    let grows = rules.grows();
+    for round in 0_usize.. {
+        const ASK_EVERY: usize = 32;
+        if round % ASK_EVERY == 0 && !progress.step("grow", share(shared)) {
+            grown.complete = false;
+            break;
+        }
+        let (circle, reach, candidates) = {
+            let mut state = shared.borrow_mut();
+            let world = state.world();
+            let Some(circle) = world.space.largest(settings.smallest) else { break };
+            let reach = (settings.reach * circle.radius).max(2.0 * world.space.cell);
+            let candidates = world.candidates(circle, reach, &grows);
+            if settings.debug > 0 && grown.steps + 1 == settings.debug && grown.view.is_none() {
+                let view = world.space.view(settings.smallest);
+                grown.view = Some(View {
+                    chosen: Some(circle),
+                    candidates: candidates.iter().map(|candidate| candidate.element).collect(),
+                    eligible: view.0,
+                    excluded: view.1,
+                    placed: world.placed,
+                });
+            }
+            (circle, reach, candidates)
+        };
+        let mut applied = Applied::Failed;
+        for candidate in candidates.iter().take(MOST_CANDIDATES) {
+            applied = rules.grow(candidate)?;
+            if applied != Applied::Failed {
+                break;
+            }
+        }
+        let mut state = shared.borrow_mut();
+        let world = state.world();
+        match applied {
+            Applied::Placed => {
+                grown.steps += 1;
+                world.space.readmit(circle.center, reach);
+            }
+            Applied::Failed => {
+                grown.failed += 1;
+                world.space.exclude(circle.center);
+            }
+            Applied::Late => {
+                grown.complete = false;
+                break;
+            }
+        }
+        if world.placed >= settings.most {
+            grown.full = true;
+            break;
+        }
+    }
+    Ok(grown)
+}
+
+/// How much of the work is done, about: circles shrink to the smallest.
+fn share(shared: &Rc<RefCell<State>>) -> f64 {
+    let mut state = shared.borrow_mut();
+    let world = state.world();
+    let placed = world.placed as f64;
+    placed / (placed + 500.0)
+}
+
+/// Lets a seed grow at once, whatever room there is.
+///
+/// Errors: those of the rules.
+pub(super) fn sprout(rules: &mut Rules, shared: &Rc<RefCell<State>>, seed: u32) -> Result<Applied, Error> {
+    let goal = {
+        let mut state = shared.borrow_mut();
+        let world = state.world();
+        let at =
+            world.elements[seed as usize].proxies[0].as_ref().map_or(Point::ORIGIN, |proxy| proxy.start());
+        Circle { center: at, radius: world.wall_distance(at).max(0.0) }
+    };
+    rules.grow(&Candidate { element: seed, goal })
+}

@@ -1,0 +1,441 @@
+//! The growing ornament: its elements, where they are, and what may join them (000 4.1, 4.2).
+
+use super::index::{Index, Placed};
+use super::piece::{Kind, Piece, Proxy};
+use super::space::{Circle, Space};
+use crate::geom::region::Region;
+use kurbo::{Affine, Point, Rect};
+use rhai::Dynamic;
+
+/// No element.
+pub const NONE: u32 = u32::MAX;
+
+/// What a rule file says of a type of element (checklist W-067 to W-070).
+#[derive(Clone, Debug)]
+pub struct ElementKind {
+    /// Its name.
+    pub name: String,
+    /// The shapes that stand for it.
+    pub proxies: Vec<Kind>,
+    /// Its user fields and what they start with.
+    pub fields: Vec<(String, Dynamic)>,
+    /// True if it may lie over others.
+    pub overlaps: bool,
+}
+
+/// An element in the tree (checklist W-071).
+#[derive(Clone, Debug)]
+pub struct Element {
+    /// Index of its type.
+    pub kind: usize,
+    /// What it grew from.
+    pub parent: u32,
+    /// What has grown from it.
+    pub children: Vec<u32>,
+    /// Nothing grows from it any more.
+    pub sterile: bool,
+    /// Which application of a rule made it.
+    pub firing: u32,
+    /// Steps from a seed.
+    pub generation: u32,
+    /// User fields, in the order in which they are declared.
+    pub fields: Vec<Dynamic>,
+    /// Its proxies; `None` where none was set.
+    pub proxies: Vec<Option<Proxy>>,
+}
+
+/// What grows and where.
+#[derive(Debug)]
+pub(super) struct World {
+    pub kinds: Vec<ElementKind>,
+    /// Placed ones first, then those that a rule works on.
+    pub elements: Vec<Element>,
+    pub placed: usize,
+    /// What the rule has declared as its children with `new_child`, beside the static ones.
+    pub children: Vec<u32>,
+    pub space: Space,
+    index: Index,
+    /// Where ornament may be; `None` where it repeats all over the plane.
+    pub region: Option<Region>,
+    pub bounds: Rect,
+    /// The symmetries of the ornament; the first changes nothing.
+    images: Vec<Affine>,
+    firing: u32,
+    /// Distance that chords keep to curves.
+    tolerance: f64,
+    /// Distance kept to all but relatives.
+    pub gap: f64,
+}
+
+/// An element near an empty circle, and the circle as its image sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Candidate {
+    pub element: u32,
+    pub goal: Circle,
+}
+
+impl World {
+    pub fn new(kinds: Vec<ElementKind>, space: Space, region: Option<Region>, bounds: Rect) -> Self {
+        // About as many cells as elements that fill it.
+        let side = (bounds.area() / 4000.0).sqrt().max(1e-9);
+        World {
+            kinds,
+            elements: Vec::new(),
+            placed: 0,
+            children: Vec::new(),
+            index: Index::new(bounds, side),
+            tolerance: 0.1 * space.cell,
+            space,
+            region,
+            bounds,
+            images: vec![Affine::IDENTITY],
+            firing: 0,
+            gap: 0.0,
+        }
+    }
+
+    /// Grows all at once what these symmetries map onto each other; the first is the identity.
+    pub fn set_images(&mut self, images: Vec<Affine>) {
+        self.images = images;
+    }
+
+    pub fn images(&self) -> &[Affine] {
+        &self.images
+    }
+
+    /// A fresh element that is not placed yet.
+    pub fn fresh(&mut self, kind: usize, parent: u32) -> u32 {
+        let of = &self.kinds[kind];
+        let generation = self.elements.get(parent as usize).map_or(0, |parent| parent.generation + 1);
+        self.elements.push(Element {
+            kind,
+            parent,
+            children: Vec::new(),
+            sterile: false,
+            firing: self.firing,
+            generation,
+            fields: of.fields.iter().map(|(_, value)| value.clone()).collect(),
+            proxies: vec![None; of.proxies.len()],
+        });
+        self.elements.len() as u32 - 1
+    }
+
+    /// Forgets what has not been placed.
+    pub fn discard(&mut self) {
+        self.elements.truncate(self.placed);
+        self.children.clear();
+    }
+
+    fn pieces(&self, element: u32) -> Vec<Piece> {
+        let proxies = self.elements[element as usize].proxies.iter().flatten();
+        proxies.flat_map(|proxy| proxy.pieces(self.tolerance)).collect()
+    }
+
+    /// Places the fresh elements that are children: the static ones and those that a rule declared.
+    /// False, and nothing is placed, if one of them is outside or in the way of another.
+    pub fn commit(&mut self, parent: u32, statics: usize) -> bool {
+        let first = self.placed as u32;
+        let mut chosen: Vec<u32> = (first..first + statics as u32).collect();
+        for &child in &self.children {
+            if !chosen.contains(&child) {
+                chosen.push(child);
+            }
+        }
+        let all: Vec<Vec<Piece>> = chosen.iter().map(|&child| self.pieces(child)).collect();
+        if all.iter().all(Vec::is_empty) {
+            self.discard();
+            return false;
+        }
+        for (&child, pieces) in chosen.iter().zip(&all) {
+            let kind = self.elements[child as usize].kind;
+            let is_free = self.kinds[kind].overlaps;
+            let sane = self.elements[child as usize].proxies.iter().flatten().all(Proxy::is_sane);
+            if !sane || !pieces.iter().all(|piece| self.is_inside(piece)) {
+                self.discard();
+                return false;
+            }
+            if !is_free && self.overlaps(pieces, parent, true) {
+                self.discard();
+                return false;
+            }
+        }
+        if self.meets_itself(&all, parent) {
+            self.discard();
+            return false;
+        }
+        let mut kept: Vec<Element> = Vec::with_capacity(chosen.len());
+        for &child in &chosen {
+            kept.push(self.elements[child as usize].clone());
+        }
+        self.elements.truncate(self.placed);
+        self.elements.extend(kept);
+        for (i, pieces) in all.into_iter().enumerate() {
+            self.stamp(pieces, first + i as u32);
+        }
+        if let Some(parent) = self.elements.get_mut(parent as usize) {
+            parent.children.extend(first..first + chosen.len() as u32);
+        }
+        self.placed = self.elements.len();
+        self.children.clear();
+        self.firing += 1;
+        true
+    }
+
+    /// Enters the pieces of an element and all their images. Where room is looked for, lines may be
+    /// coarser than where it is tested.
+    fn stamp(&mut self, pieces: Vec<Piece>, element: u32) {
+        let coarse: Vec<Piece> = self.elements[element as usize]
+            .proxies
+            .iter()
+            .flatten()
+            .flat_map(|proxy| proxy.pieces(0.5 * self.space.cell))
+            .collect();
+        let around = self.bounds.inflate(0.6 * self.bounds.width(), 0.6 * self.bounds.height());
+        for (image, &by) in self.images.iter().enumerate() {
+            for piece in &coarse {
+                let piece = if image == 0 { piece.clone() } else { piece.moved(by) };
+                if image == 0 || piece.bounds().overlaps(around) {
+                    self.space.add(&piece, element);
+                }
+            }
+            for piece in &pieces {
+                let piece = if image == 0 { piece.clone() } else { piece.moved(by) };
+                if image > 0 && !piece.bounds().overlaps(around) {
+                    continue;
+                }
+                self.index.add(Placed { piece, element, image: image as u16 });
+            }
+        }
+    }
+
+    /// True if a piece lies in the region, which has the symmetries of the ornament.
+    pub fn is_inside(&self, piece: &Piece) -> bool {
+        let Some(region) = &self.region else { return true };
+        let crosses = |a: Point, b: Point| {
+            let mut is_crossed = false;
+            region.edges().visit(a, b, 0.0, |p, q, _| {
+                is_crossed = piece.meets(p, q);
+                !is_crossed
+            });
+            is_crossed
+        };
+        region.contains(piece.sample())
+            && match piece {
+                Piece::Disc(center, radius) => region.distance(*center, *radius) >= *radius - 1e-9,
+                Piece::Segment(a, b) => !crosses(*a, *b),
+                Piece::Area(_) => {
+                    let bounds = piece.bounds();
+                    !crosses(bounds.origin(), Point::new(bounds.x1, bounds.y1))
+                }
+            }
+    }
+
+    /// Distance to the boundary, negative outside, or to where the images of a place would meet it.
+    pub fn wall_distance(&self, p: Point) -> f64 {
+        let reach = self.bounds.size().max_side();
+        let wall = self.region.as_ref().map_or(reach, |region| match region.contains(p) {
+            true => region.distance(p, reach),
+            false => -region.distance(p, reach),
+        });
+        self.images[1..].iter().map(|&by| 0.5 * p.distance(by * p)).fold(wall, f64::min)
+    }
+
+    /// True if some of the pieces touch what is placed, or their own images. Relatives may touch
+    /// where the parent is: brothers leave it at one place.
+    pub fn overlaps(&mut self, pieces: &[Piece], parent: u32, is_child: bool) -> bool {
+        let gap = self.gap;
+        let slack = 1e-6 + 1e-6 * self.bounds.width();
+        let family = if is_child { self.family(parent) } else { Vec::new() };
+        let (elements, kinds) = (&self.elements, &self.kinds);
+        let joint = 2.0 * slack + 0.5 * gap;
+        let parent_pieces: Vec<Piece> = match elements.get(parent as usize) {
+            Some(element) if is_child => {
+                element.proxies.iter().flatten().flat_map(|proxy| proxy.pieces(self.tolerance)).collect()
+            }
+            _ => Vec::new(),
+        };
+        for piece in pieces {
+            let mut is_hit = false;
+            self.index.near(piece.bounds().inflate(gap, gap), |other| {
+                let is_parent = is_child && other.element == parent && other.image == 0;
+                if is_parent || kinds[elements[other.element as usize].kind].overlaps {
+                    return true;
+                }
+                let apart = piece.apart(&other.piece);
+                let is_thin = matches!((piece, &other.piece), (Piece::Segment(..), Piece::Segment(..)));
+                let most = if is_thin { slack.max(gap) } else { gap - slack };
+                if apart < most {
+                    let is_joint = family.contains(&other.element) && {
+                        let at = contact(piece, &other.piece);
+                        parent_pieces.iter().any(|parent| parent.distance(at) <= joint + gap)
+                    };
+                    is_hit = !is_joint;
+                }
+                !is_hit
+            });
+            if is_hit {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// True if what grows at once touches its own images, elsewhere than at the parent.
+    fn meets_itself(&self, all: &[Vec<Piece>], parent: u32) -> bool {
+        if self.images.len() == 1 {
+            return false;
+        }
+        let slack = 1e-6 + 1e-6 * self.bounds.width();
+        let pieces: Vec<(&Piece, Rect)> = all.iter().flatten().map(|piece| (piece, piece.bounds())).collect();
+        let Some(whole) = pieces.iter().map(|piece| piece.1).reduce(|a, b| a.union(b)) else { return false };
+        let parent = self.elements.get(parent as usize);
+        let parent: Vec<Piece> = parent
+            .into_iter()
+            .flat_map(|parent| parent.proxies.iter().flatten())
+            .flat_map(|proxy| proxy.pieces(self.tolerance))
+            .collect();
+        let is_joint = |at: Point| parent.iter().any(|piece| piece.distance(at) <= 4.0 * slack + self.gap);
+        let near = whole.inflate(self.gap, self.gap);
+        self.images[1..].iter().any(|&by| {
+            let elsewhere = by.transform_rect_bbox(whole);
+            if !elsewhere.overlaps(near) {
+                return false;
+            }
+            pieces.iter().any(|(a, _)| {
+                let moved = a.moved(by);
+                let around = moved.bounds().inflate(self.gap + slack, self.gap + slack);
+                pieces.iter().any(|(b, bounds)| {
+                    let touches = bounds.x0 <= around.x1
+                        && around.x0 <= bounds.x1
+                        && bounds.y0 <= around.y1
+                        && around.y0 <= bounds.y1;
+                    touches && b.apart(&moved) < slack.max(self.gap) && !is_joint(contact(b, &moved))
+                })
+            })
+        })
+    }
+
+    /// Relatives of what grows from an element: its parent, what it was made with, its children.
+    fn family(&self, parent: u32) -> Vec<u32> {
+        let Some(element) = self.elements.get(parent as usize) else { return Vec::new() };
+        let mut family = self.made_with(parent);
+        family.push(element.parent);
+        family.extend(&element.children);
+        family
+    }
+
+    /// What an application of a rule made together with an element.
+    fn made_with(&self, element: u32) -> Vec<u32> {
+        let Some(of) = self.elements.get(element as usize) else { return Vec::new() };
+        // They are placed one after the other.
+        let is_of_it = |i: &usize| self.elements[*i].firing == of.firing;
+        let before = (0..element as usize).rev().take_while(is_of_it);
+        let after = (element as usize + 1..self.placed).take_while(is_of_it);
+        before.chain(after).map(|i| i as u32).collect()
+    }
+
+    /// Elements within `reach` of a circle from which something may grow, nearest first.
+    pub fn candidates(&mut self, circle: Circle, reach: f64, grows: &[bool]) -> Vec<Candidate> {
+        let within = circle.radius + reach;
+        let around = Rect::from_center_size(circle.center, (2.0 * within, 2.0 * within));
+        let mut found: Vec<(f64, u32, u16)> = Vec::new();
+        let elements = &self.elements;
+        self.index.near(around, |placed| {
+            let element = &elements[placed.element as usize];
+            if element.sterile || !grows[element.kind] {
+                return true;
+            }
+            let distance = placed.piece.distance(circle.center);
+            if distance <= within {
+                match found.iter_mut().find(|known| known.1 == placed.element && known.2 == placed.image) {
+                    Some(known) => known.0 = known.0.min(distance),
+                    None => found.push((distance, placed.element, placed.image)),
+                }
+            }
+            true
+        });
+        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+        found
+            .into_iter()
+            .map(|(_, element, image)| {
+                let back = self.images[image as usize].inverse();
+                let goal = Circle { center: back * circle.center, ..circle };
+                Candidate { element, goal }
+            })
+            .collect()
+    }
+
+    /// The nearest element of a type, if there is one within `reach`.
+    pub fn nearest(&mut self, kind: Option<usize>, at: Point, reach: f64) -> Option<(u32, f64)> {
+        let mut best: Option<(u32, f64)> = None;
+        let around = Rect::from_center_size(at, (2.0 * reach, 2.0 * reach));
+        let elements = &self.elements;
+        self.index.near(around, |placed| {
+            if kind.is_none_or(|kind| elements[placed.element as usize].kind == kind) {
+                let distance = placed.piece.distance(at);
+                let is_nearer = best.is_none_or(|(element, least)| {
+                    distance < least || distance == least && placed.element < element
+                });
+                if distance <= reach && is_nearer {
+                    best = Some((placed.element, distance));
+                }
+            }
+            true
+        });
+        best
+    }
+
+    /// Room along a curve: the least distance from it to the boundary and to what is placed, `reach`
+    /// at most. Not counting an element and its kin.
+    pub fn clearance(&mut self, proxy: &Proxy, without: u32, reach: f64) -> f64 {
+        let mut least = reach;
+        let mut kin = self.made_with(without);
+        kin.push(without);
+        for piece in proxy.pieces(self.tolerance) {
+            if !self.is_inside(&piece) {
+                return 0.0;
+            }
+            let mut places = Vec::new();
+            piece.along(self.space.cell, |p| places.push(p));
+            if let Some(region) = &self.region {
+                least = places.iter().fold(least, |least, &p| least.min(region.distance(p, reach)));
+            }
+            self.index.near(piece.bounds().inflate(reach, reach), |other| {
+                if !kin.contains(&other.element) {
+                    least = least.min(piece.apart(&other.piece));
+                }
+                true
+            });
+        }
+        least.max(0.0)
+    }
+}
+
+/// Where two pieces touch, about.
+fn contact(a: &Piece, b: &Piece) -> Point {
+    match (a, b) {
+        (Piece::Segment(p, q), Piece::Segment(r, s)) => {
+            let (d, e, w) = (*q - *p, *s - *r, *r - *p);
+            let cross = d.cross(e);
+            if cross.abs() > 1e-12 {
+                let (t, u) = (w.cross(e) / cross, w.cross(d) / cross);
+                if (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&u) {
+                    return *p + t * d;
+                }
+            }
+            let ends =
+                [(*p, b.distance(*p)), (*q, b.distance(*q)), (*r, a.distance(*r)), (*s, a.distance(*s))];
+            ends.into_iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(*p, |end| end.0)
+        }
+        (Piece::Disc(center, _), Piece::Segment(p, q)) | (Piece::Segment(p, q), Piece::Disc(center, _)) => {
+            let d = *q - *p;
+            let t = ((*center - *p).dot(d) / d.hypot2().max(1e-300)).clamp(0.0, 1.0);
+            *p + t * d
+        }
+        (Piece::Disc(one, radius), Piece::Disc(two, _)) => {
+            let d = *two - *one;
+            *one + d * (radius / d.hypot().max(1e-300))
+        }
+        (piece, _) => piece.sample(),
+    }
+}
