@@ -223,7 +223,7 @@ rule branch -> {
     let t = foot(parent, goal.center);
     let from = parent.at(t);
     let hand = if parent.tangent(t).cross(goal.center - from) > 0.0 { 1 } else { -1 };
-    let size = min(distance(from, goal.center), 14.0);
+    let size = min(min(distance(from, goal.center), goal.radius), 14.0);
     scroll(from, from.offset(goal.center - from, size), hand, min(1.2, 0.4 + size / 14.0));
 }
 
@@ -233,7 +233,7 @@ rule arm -> {
     let from = parent.at(t);
     let hand = if parent.tangent(t).cross(goal.center - from) > 0.0 { 1 } else { -1 };
     if hand == parent.hand && goal.radius > 3.0 { return FAILURE; }
-    let size = min(distance(from, goal.center), 14.0);
+    let size = min(min(distance(from, goal.center), goal.radius), 14.0);
     let width = 0.4 + size / 14.0;
     scroll(from, from.offset(goal.center - from, size), hand, min(width, max(parent.width, 0.7 * width)));
 }

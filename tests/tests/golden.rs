@@ -149,7 +149,7 @@ element tie: linesegment
 let links = 0;
 rule seed -> link first { parent.sterile = true; first.set(parent, 3); }
 rule link -> tie bar, link next {
-    if goal.radius &lt; 4.0 { return FAILURE; }
+    if goal.radius &lt; 4.0 || links == 8 { return FAILURE; }
     links += 1;
     next.order = links;
     let far = min(distance(parent, goal), 12);

@@ -139,7 +139,7 @@ proptest! {
 
     /// Any rule file gives an ornament or a sentence, and ends.
     #[test]
-    fn any_rules_end(text in "[a-z%$(){};=+*/<>\\-\\. \n0-9\"&|!,:~?]{0,300}") {
+    fn any_rules_end(text in "[a-zé“˜%$(){};=+*/<>\\-\\. \n0-9\"&|!,:~?]{0,300}") {
         let file = format!("element seed: point\nelement dot: circle\nrule seed -> dot d {{ {text} }}");
         let printed = format!("%element\nseed point\n%endelement\n%element\ndot circle\n%endelement\n%rule\nseed --> dot\n{{ {text} }}\n%endrule");
         for file in [file, printed, text] {
@@ -485,6 +485,19 @@ mod rules {
         insta::assert_snapshot!(refusal("element seed: point\nrule seed -> {}\nlook seed: art nothing"), @"No artwork is called 'nothing'. Use one of stem, vine, brush, ribbon, rope, leafy, beads, acanthus, leaf, willow, drop, hook, petal, quote, dot, ring, rosette, daisy, peony, lotus, bud, star, outline, fill or none. [unknown-art]");
         insta::assert_snapshot!(refusal("element seed: point\nrule seed -> {}\nlook seed: colour red"), @"The rules 'own', 3:12: a look has no 'colour'. Use art, width, size, tone, by, thick or join. [bad-rules]");
         insta::assert_snapshot!(refusal("grow!"), @"The rules 'own', 1:1: 'grow' means nothing here. Write an element, a rule, a look, smallest, reach, let or fn. [bad-rules]");
+    }
+
+    /// What the tutorial shows does what it says.
+    #[test]
+    fn the_tutorial_runs() {
+        let page = std::fs::read_to_string(support::root().join("docs/rules.md")).unwrap();
+        let shown = page.split("```\n").nth(1).unwrap();
+        let artwork = grown(&scene_with(shown), &[("rules", "own")], 1).unwrap();
+        assert!(discs(&artwork, "berry").len() > 100);
+        let printed = page.split("```\n").nth(3).unwrap();
+        let start = "%element\nseed point\n%endelement\n%rule\nseed --> dot { $0.set($, 3); return SUCCESS; }\n%endrule\n";
+        let artwork = grown(&scene_with(&format!("{start}{printed}")), &[("rules", "own")], 1).unwrap();
+        assert!(discs(&artwork, "dot").len() > 500);
     }
 
     #[test]

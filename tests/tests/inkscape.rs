@@ -116,6 +116,22 @@ fn a_selected_shape_fills_and_fills_anew() {
 }
 
 #[test]
+fn a_selected_shape_fills_with_growth() {
+    let user = User::new();
+    let plain = svg(
+        "<path id=\"leaf\" d=\"M 20,100 C 60,20 140,20 180,100 140,180 60,180 20,100 Z\" style=\"fill:#e8e0c8\"/>\n<circle id=\"start\" class=\"rinceau-seed\" cx=\"40\" cy=\"100\" r=\"1\" style=\"fill:none\"/>",
+    );
+    assert!(user.extensions().join("grow-patterns.png").is_file());
+    let once = user.edit(&plain, "select-by-id:leaf;org.rinceau.grow.noprefs");
+    assert_eq!(rest(&once), rest(&plain));
+    let xml = parse(&once);
+    let [layer] = layers(&xml)[..] else { panic!("{} layers:\n{once:.3000}", layers(&xml).len()) };
+    assert_eq!(layer.attribute((RINCEAU, "result")), Some("grow"));
+    assert_eq!(layer.attribute((RINCEAU, "params")), Some("{}"), "defaults are no parameters");
+    assert!(elements(layer).len() > 100, "{} elements", elements(layer).len());
+}
+
+#[test]
 fn a_selected_shape_grows_a_vine_and_grows_anew() {
     let user = User::new();
     let plain = svg(

@@ -88,7 +88,12 @@ impl Drawing<'_> {
         let style = self.params.style.as_str();
         let drawn = arts.drawn(&name);
         let largest = self.largest(world, look);
-        for strand in strands(world, look) {
+        let how = match (drawn, style, look.art.as_str()) {
+            (_, "outline", _) | (None, _, "outline" | "none") => How::Lines,
+            (None, _, "fill") => How::Areas,
+            _ => How::Bent,
+        };
+        for strand in strands(world, look, how) {
             let is_line = strand.disc.is_none();
             let art = match (drawn, style) {
                 (Some(art), "drawn") => Some(art),
@@ -292,8 +297,27 @@ fn rainbow(share: f64) -> String {
     format!("#{:02x}{:02x}{:02x}", byte(r), byte(g), byte(b))
 }
 
+/// What an element between two lines is drawn as.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum How {
+    /// Artwork along its middle.
+    Bent,
+    /// The area between the lines.
+    Areas,
+    /// Each line.
+    Lines,
+}
+
+/// The outline of what lies between two lines.
+fn around(a: &Proxy, b: &Proxy) -> BezPath {
+    let mut path = a.path();
+    path.extend(b.path().reverse_subpaths().elements().iter().skip(1).copied());
+    path.close_path();
+    path
+}
+
 /// What is drawn of a type: lines that continue each other are one if they are to be joined.
-fn strands(world: &World, look: &Look) -> Vec<Strand> {
+fn strands(world: &World, look: &Look, how: How) -> Vec<Strand> {
     let mut strands: Vec<(u32, Strand)> = Vec::new();
     for (number, element) in world.elements[..world.placed].iter().enumerate() {
         if element.kind != look.kind {
@@ -301,8 +325,12 @@ fn strands(world: &World, look: &Look) -> Vec<Strand> {
         }
         let lines: Vec<&Proxy> = element.proxies.iter().flatten().filter(|proxy| proxy.is_line()).collect();
         if let [a, b] = lines[..]
-            && let Some(strand) = between(number, a, b)
+            && how != How::Lines
+            && let Some(mut strand) = between(number, a, b)
         {
+            if how == How::Areas {
+                strand = Strand { path: around(a, b), widths: None, ..strand };
+            }
             strands.push((element.firing, strand));
             continue;
         }

@@ -73,7 +73,7 @@ pub(super) fn grow(
             let mut state = shared.borrow_mut();
             let world = state.world();
             let Some(circle) = world.space.largest(settings.smallest) else { break };
-            let reach = (settings.reach * circle.radius).max(2.0 * world.space.cell);
+            let reach = (settings.reach * circle.radius).max(2.0 * world.space.cell());
             let candidates = world.candidates(circle, reach, &grows);
             if settings.debug > 0 && grown.steps + 1 == settings.debug && grown.view.is_none() {
                 let view = world.space.view(settings.smallest);

@@ -39,7 +39,7 @@ use kurbo::{Affine, CubicBez, PathSeg, Point, Rect, Shape, Vec2};
 use piece::{Kind, Proxy};
 use rinceau_format::{Artwork, Error, Scene};
 use rules::{Rules, State};
-use space::Space;
+use space::Room;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -49,7 +49,7 @@ use world::World;
 /// Cells of one container at most; a larger one has coarser cells.
 const MOST_CELLS: f64 = 3e6;
 /// Side of a cell in units of the rules: about a tenth of the radius of a dot of the paper's.
-const CELL: f64 = 0.25;
+const CELL: f64 = 0.28;
 /// A shape has so many units along the side of a square as large as it.
 const UNITS: f64 = 100.0;
 /// Seeds of one container at most.
@@ -197,17 +197,11 @@ impl One<'_> {
             Extent::Band | Extent::Plane => scaled(user_bounds, 1.0 / unit),
         };
         let cell = CELL.max((bounds.area() / MOST_CELLS).sqrt());
-        let inside = match symmetry.extent {
-            Extent::Plane => {
-                let (columns, rows) = Space::grid(bounds, cell);
-                vec![f32::MAX; columns * rows]
-            }
-            _ => space::inside_distances(&region, bounds, cell),
-        };
-        let space = Space::new(bounds, cell, &inside);
         let region = (!matches!(symmetry.extent, Extent::Plane)).then_some(region);
+        let images = symmetry.images(bounds)?;
+        let space = Room::new(region.as_ref(), bounds, cell, &images);
         let mut world = World::new(rules.kinds(), space, region, bounds);
-        world.set_images(symmetry.images(bounds)?);
+        world.set_images(images);
         let seeds = self.seeds(&world, unit);
         let stems = self.stems(unit);
         let shared = rules.start(State::new(world, rng.fork(), self.targets(unit)), None)?;

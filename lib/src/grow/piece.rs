@@ -244,14 +244,20 @@ impl Piece {
         }
     }
 
-    /// Visits places along it, no more than `step` apart; the middle of a disc stands for it.
+    /// Visits places along its outline, no more than `step` apart.
     pub fn along(&self, step: f64, mut visit: impl FnMut(Point)) {
         let mut line = |a: Point, b: Point| {
             let n = (a.distance(b) / step).ceil().clamp(1.0, 1e6) as usize;
             (0..=n).for_each(|i| visit(a.lerp(b, i as f64 / n as f64)));
         };
         match self {
-            Piece::Disc(center, _) => visit(*center),
+            Piece::Disc(center, radius) => {
+                let n = (std::f64::consts::TAU * radius / step).ceil().clamp(1.0, 1e6) as usize;
+                for i in 0..n {
+                    let angle = std::f64::consts::TAU * i as f64 / n as f64;
+                    visit(*center + *radius * Vec2::new(libm::cos(angle), libm::sin(angle)));
+                }
+            }
             Piece::Segment(a, b) => line(*a, *b),
             Piece::Area(points) => sides(points).for_each(|(a, b)| line(a, b)),
         }

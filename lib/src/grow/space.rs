@@ -13,7 +13,7 @@ use super::piece::Piece;
 use crate::geom::distance::covered;
 use crate::geom::near::point_segment;
 use crate::geom::region::Region;
-use kurbo::{Point, Rect, Vec2};
+use kurbo::{Affine, Point, Rect, Vec2};
 
 /// The nearest thing is the boundary.
 pub(super) const BOUNDARY: u32 = u32::MAX;
@@ -33,13 +33,19 @@ pub struct Circle {
     pub radius: f64,
 }
 
+/// The nearest excluded point whose disc reaches a cell, and how far it is.
 #[derive(Clone, Copy, Debug)]
-struct Cell {
+struct Exclusion {
     distance: f32,
-    nearest: u32,
-    /// To the nearest excluded point whose disc reaches here.
-    excluded: f32,
-    excluded_by: u32,
+    by: u32,
+}
+
+const FREE: Exclusion = Exclusion { distance: f32::INFINITY, by: NONE };
+
+#[derive(Clone, Copy, Debug)]
+struct Near {
+    distance: f32,
+    by: u32,
 }
 
 /// A level of the pyramid: the largest value in each block of the level below.
@@ -49,14 +55,18 @@ struct Level {
     best: Vec<f32>,
 }
 
-/// Distances in a container, and the places that were tried in vain.
+/// Distances in a container at one scale, and the places that were tried in vain.
 #[derive(Clone, Debug)]
 pub(super) struct Space {
     origin: Point,
-    pub cell: f64,
+    cell: f64,
     columns: usize,
     rows: usize,
-    cells: Vec<Cell>,
+    /// From the middle of each cell to what is nearest. Cells of a block lie together, so that a wave
+    /// stays within little memory.
+    near: Vec<Near>,
+    /// What excludes the cells of a block, for blocks that an excluded point reaches.
+    exclusions: Vec<Option<Box<[Exclusion; BLOCK * BLOCK]>>>,
     levels: Vec<Level>,
     is_dirty: Vec<bool>,
     dirty: Vec<usize>,
@@ -65,21 +75,17 @@ pub(super) struct Space {
     /// Points of the list by block.
     excluded_in: Vec<Vec<u32>>,
     /// Work space of the waves.
-    queue: Vec<usize>,
+    queue: Vec<Visit>,
 }
+
+/// Column, row and number of a cell.
+type Visit = (u32, u32, u32);
 
 impl Space {
     /// A space of cells whose middles are inside where `is_inside` says so, at this distance from
     /// the boundary.
     pub fn new(bounds: Rect, cell: f64, inside: &[f32]) -> Self {
         let (columns, rows) = Self::grid(bounds, cell);
-        let cells = inside.iter().map(|&distance| Cell {
-            distance,
-            nearest: if distance > 0.0 { BOUNDARY } else { OUTSIDE },
-            excluded: f32::INFINITY,
-            excluded_by: NONE,
-        });
-        let cells: Vec<Cell> = cells.collect();
         let mut levels = Vec::new();
         let (mut c, mut r) = (columns, rows);
         while levels.is_empty() || c * r > 1 {
@@ -87,12 +93,19 @@ impl Space {
             levels.push(Level { columns: c, best: vec![-1.0; c * r] });
         }
         let blocks = levels[0].best.len();
+        let count = blocks * BLOCK * BLOCK;
+        let mut near = vec![Near { distance: 0.0, by: OUTSIDE }; count];
+        for (i, &distance) in inside.iter().enumerate() {
+            let by = if distance > 0.0 { BOUNDARY } else { OUTSIDE };
+            near[cell_number(i % columns, i / columns, levels[0].columns)] = Near { distance, by };
+        }
         Space {
             origin: bounds.origin(),
             cell,
             columns,
             rows,
-            cells,
+            near,
+            exclusions: vec![None; blocks],
             levels,
             is_dirty: vec![false; blocks],
             dirty: Vec::new(),
@@ -108,98 +121,220 @@ impl Space {
         (count(bounds.width()), count(bounds.height()))
     }
 
+    /// Number of the cell in a column and row.
+    #[inline]
+    fn number(&self, x: usize, y: usize) -> usize {
+        cell_number(x, y, self.levels[0].columns)
+    }
+
+    /// Column and row of a cell.
+    fn column_row(&self, number: usize) -> (usize, usize) {
+        let (block, within) = (number / (BLOCK * BLOCK), number % (BLOCK * BLOCK));
+        let columns = self.levels[0].columns;
+        (block % columns * BLOCK + within % BLOCK, block / columns * BLOCK + within / BLOCK)
+    }
+
     /// The middle of a cell.
-    fn middle(&self, index: usize) -> Point {
-        let (x, y) = (index % self.columns, index / self.columns);
+    fn middle(&self, number: usize) -> Point {
+        let (x, y) = self.column_row(number);
+        self.middle_at(x, y)
+    }
+
+    fn middle_at(&self, x: usize, y: usize) -> Point {
         self.origin + Vec2::new((x as f64 + 0.5) * self.cell, (y as f64 + 0.5) * self.cell)
     }
 
-    fn index(&self, p: Point) -> Option<usize> {
+    /// Column and row of a place.
+    fn place(&self, p: Point) -> Option<(usize, usize)> {
         let (x, y) = ((p.x - self.origin.x) / self.cell, (p.y - self.origin.y) / self.cell);
         let is_in = x >= 0.0 && y >= 0.0 && x < self.columns as f64 && y < self.rows as f64;
-        is_in.then(|| y as usize * self.columns + x as usize)
+        is_in.then_some((x as usize, y as usize))
     }
 
-    fn block_of(&self, index: usize) -> usize {
-        let (x, y) = (index % self.columns, index / self.columns);
-        y / BLOCK * self.levels[0].columns + x / BLOCK
+    fn index(&self, p: Point) -> Option<usize> {
+        self.place(p).map(|(x, y)| self.number(x, y))
     }
 
-    fn touch(&mut self, index: usize) {
-        let block = self.block_of(index);
+    /// A cell has changed.
+    fn touch(&mut self, number: usize) {
+        let block = number / (BLOCK * BLOCK);
         if !self.is_dirty[block] {
             self.is_dirty[block] = true;
             self.dirty.push(block);
         }
     }
 
-    /// The cells beside one.
-    fn beside(&self, index: usize) -> impl Iterator<Item = usize> + use<> {
-        let (x, columns, count) = (index % self.columns, self.columns, self.cells.len());
-        let left = (x > 0).then(|| index - 1);
-        let right = (x + 1 < columns).then(|| index + 1);
-        let up = index.checked_sub(columns);
-        let down = (index + columns < count).then(|| index + columns);
+    /// The radius of a circle around a cell's middle that may be chosen, or -1.
+    fn value(&self, number: usize) -> f32 {
+        let near = self.near[number];
+        if near.by < OUTSIDE && self.exclusion(number).distance > near.distance {
+            near.distance
+        } else {
+            -1.0
+        }
+    }
+
+    fn exclusion(&self, number: usize) -> Exclusion {
+        let cells = &self.exclusions[number / (BLOCK * BLOCK)];
+        cells.as_ref().map_or(FREE, |cells| cells[number % (BLOCK * BLOCK)])
+    }
+
+    fn set_exclusion(&mut self, number: usize, exclusion: Exclusion) {
+        let cells = &mut self.exclusions[number / (BLOCK * BLOCK)];
+        let cells = cells.get_or_insert_with(|| Box::new([FREE; BLOCK * BLOCK]));
+        cells[number % (BLOCK * BLOCK)] = exclusion;
+        self.touch(number);
+    }
+
+    /// Cells that a wave goes on to from one.
+    fn beside(&self, x: usize, y: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let left = (x > 0).then(|| (x - 1, y));
+        let right = (x + 1 < self.columns).then_some((x + 1, y));
+        let up = (y > 0).then(|| (x, y - 1));
+        let down = (y + 1 < self.rows).then_some((x, y + 1));
         [left, right, up, down].into_iter().flatten()
     }
 
     /// Distance from the middle of the cell at a place to what is nearest; `None` outside.
     pub fn distance(&self, at: Point) -> Option<f64> {
-        let cell = self.cells[self.index(at)?];
-        (cell.nearest != OUTSIDE).then_some(f64::from(cell.distance))
+        let index = self.index(at)?;
+        (self.near[index].by != OUTSIDE).then_some(f64::from(self.near[index].distance))
     }
 
-    /// Adds a piece of an element. The cells that it is nearest to hang together, so that a wave
-    /// from the cells along it reaches them all.
-    pub fn add(&mut self, piece: &Piece, element: u32) {
+    /// Adds a piece of an element. If it is its `only` one, cells that are the element's need not be
+    /// looked at again.
+    pub fn add(&mut self, piece: &Piece, element: u32, only: bool) {
+        let own = if only { element } else { OUTSIDE };
+        let local = |p: Point| ((p.x - self.origin.x) as f32, (p.y - self.origin.y) as f32);
+        match *piece {
+            Piece::Disc(center, radius) => {
+                let ((cx, cy), radius) = (local(center), radius as f32);
+                self.fill(element, (cx, cy), radius);
+                self.wave(piece, (element, own), |x, y, known| {
+                    // Most cells are not nearer, and need no root to tell.
+                    let (dx, dy, reach) = (x - cx, y - cy, known + radius);
+                    let squared = dx * dx + dy * dy;
+                    if reach > 0.0 && squared < reach * reach { squared.sqrt() - radius } else { known }
+                });
+            }
+            Piece::Segment(a, b) => {
+                let ((ax, ay), (bx, by)) = (local(a), local(b));
+                let (ux, uy) = (bx - ax, by - ay);
+                let scale = 1.0 / (ux * ux + uy * uy).max(f32::MIN_POSITIVE);
+                self.wave(piece, (element, own), |x, y, known| {
+                    let (wx, wy) = (x - ax, y - ay);
+                    let t = ((wx * ux + wy * uy) * scale).clamp(0.0, 1.0);
+                    let (dx, dy) = (wx - t * ux, wy - t * uy);
+                    let squared = dx * dx + dy * dy;
+                    if known > 0.0 && squared < known * known { squared.sqrt() } else { known }
+                });
+            }
+            Piece::Area(_) => {
+                let origin = self.origin.to_vec2();
+                self.wave(piece, (element, own), |x, y, _| {
+                    piece.distance(Point::new(f64::from(x), f64::from(y)) + origin) as f32
+                });
+            }
+        }
+    }
+
+    /// Takes the inside of a disc, row by row, up to a rim that a wave then starts from: nobody asks how
+    /// deep inside a cell lies.
+    fn fill(&mut self, element: u32, (cx, cy): (f32, f32), radius: f32) {
+        let cell = self.cell as f32;
+        let inner = radius - 1.5 * cell;
+        if inner <= 0.0 {
+            return;
+        }
+        let range = |from: f32, to: f32, count: usize| {
+            let of = |v: f32| (v / cell - 0.5).clamp(0.0, count as f32);
+            of(from).ceil() as usize..(of(to) as usize + 1).min(count)
+        };
+        for y in range(cy - inner, cy + inner, self.rows) {
+            let dy = (y as f32 + 0.5) * cell - cy;
+            let half = (inner * inner - dy * dy).max(0.0).sqrt();
+            for x in range(cx - half, cx + half, self.columns) {
+                let number = self.number(x, y);
+                let near = &mut self.near[number];
+                if near.by != OUTSIDE && near.distance > -radius {
+                    *near = Near { distance: -radius, by: element };
+                    self.touch(number);
+                }
+            }
+        }
+    }
+
+    /// The cells that a piece is nearest to hang together, so that a wave from the cells along it
+    /// reaches them all. `distance` is that from a place beside the origin, or what is known if it is
+    /// not less.
+    fn wave(&mut self, piece: &Piece, (element, own): (u32, u32), distance: impl Fn(f32, f32, f32) -> f32) {
         let mut queue = std::mem::take(&mut self.queue);
-        let lower = |space: &mut Self, index: usize, queue: &mut Vec<usize>| {
-            let distance = piece.distance(space.middle(index)) as f32;
-            let cell = &mut space.cells[index];
-            if distance < cell.distance && cell.nearest != OUTSIDE {
-                cell.distance = distance;
-                cell.nearest = element;
-                space.touch(index);
-                queue.push(index);
+        let cell = self.cell as f32;
+        let lower = |space: &mut Self, (x, y, number): (usize, usize, usize), queue: &mut Vec<Visit>| {
+            let near = space.near[number];
+            if near.by == own {
+                return;
+            }
+            let distance = distance((x as f32 + 0.5) * cell, (y as f32 + 0.5) * cell, near.distance);
+            if distance < near.distance && near.by != OUTSIDE {
+                space.near[number] = Near { distance, by: element };
+                space.touch(number);
+                queue.push((x as u32, y as u32, number as u32));
             }
         };
-        piece.along(0.5 * self.cell, |p| {
-            for (dx, dy) in [(0.0, 0.0), (-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)] {
-                if let Some(index) = self.index(p + Vec2::new(dx, dy) * self.cell) {
-                    lower(self, index, &mut queue);
+        // A line passes between the middles of cells; a disc holds those along its rim.
+        const AROUND: [(f64, f64); 5] = [(0.0, 0.0), (-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)];
+        let (step, around) = match piece {
+            Piece::Disc(_, radius) if *radius > 2.0 * self.cell => (2.0 * self.cell, &AROUND[..1]),
+            _ => (0.5 * self.cell, &AROUND[..]),
+        };
+        piece.along(step, |p| {
+            for &(dx, dy) in around {
+                if let Some((x, y)) = self.place(p + Vec2::new(dx, dy) * self.cell) {
+                    lower(self, (x, y, self.number(x, y)), &mut queue);
                 }
             }
         });
+        // From the number of a cell to those beside it, within its block or in the next.
+        let (last, row) = (BLOCK - 1, self.levels[0].columns * BLOCK * BLOCK - (BLOCK - 1) * BLOCK);
+        let across = BLOCK * BLOCK - last;
         let mut next = 0;
-        while let Some(&index) = queue.get(next) {
+        while let Some(&(x, y, number)) = queue.get(next) {
             next += 1;
-            for beside in self.beside(index) {
-                lower(self, beside, &mut queue);
+            let (x, y, number) = (x as usize, y as usize, number as usize);
+            if x > 0 {
+                let by = if x % BLOCK == 0 { across } else { 1 };
+                lower(self, (x - 1, y, number - by), &mut queue);
+            }
+            if x + 1 < self.columns {
+                let by = if x % BLOCK == last { across } else { 1 };
+                lower(self, (x + 1, y, number + by), &mut queue);
+            }
+            if y > 0 {
+                let by = if y % BLOCK == 0 { row } else { BLOCK };
+                lower(self, (x, y - 1, number - by), &mut queue);
+            }
+            if y + 1 < self.rows {
+                let by = if y % BLOCK == last { row } else { BLOCK };
+                lower(self, (x, y + 1, number + by), &mut queue);
             }
         }
         queue.clear();
         self.queue = queue;
     }
 
-    /// A cell's radius, if a circle around it may be chosen.
-    fn value(cell: &Cell) -> f32 {
-        let is_eligible = cell.nearest < OUTSIDE && cell.excluded > cell.distance;
-        if is_eligible { cell.distance } else { -1.0 }
-    }
-
     fn refresh(&mut self) {
-        let columns = self.levels[0].columns;
         let mut changed: Vec<usize> = Vec::new();
         for block in std::mem::take(&mut self.dirty) {
             self.is_dirty[block] = false;
-            let (bx, by) = (block % columns * BLOCK, block / columns * BLOCK);
-            let mut best = -1.0_f32;
-            for y in by..(by + BLOCK).min(self.rows) {
-                let row = y * self.columns;
-                for cell in &self.cells[row + bx..row + (bx + BLOCK).min(self.columns)] {
-                    best = best.max(Self::value(cell));
+            let cells = block * BLOCK * BLOCK..(block + 1) * BLOCK * BLOCK;
+            let best = match self.exclusions[block].is_some() {
+                true => cells.map(|number| self.value(number)).fold(-1.0, f32::max),
+                false => {
+                    let eligible = self.near[cells].iter().filter(|near| near.by < OUTSIDE);
+                    eligible.map(|near| near.distance).fold(-1.0, f32::max)
                 }
-            }
+            };
             if self.levels[0].best[block] != best {
                 self.levels[0].best[block] = best;
                 changed.push(block);
@@ -242,37 +377,29 @@ impl Space {
         if f64::from(best) <= smallest {
             return None;
         }
-        for level in (0..self.levels.len()).rev() {
-            // `block` is of this level; the one below has the same value somewhere in it.
+        for level in (1..self.levels.len()).rev() {
+            // `block` is of this level; some block of the one below has the same value.
             let columns = self.levels[level].columns;
             let (bx, by) = (block % columns * BLOCK, block / columns * BLOCK);
-            let (below_columns, below_rows) = match level {
-                0 => (self.columns, self.rows),
-                _ => {
-                    let below = &self.levels[level - 1];
-                    (below.columns, below.best.len() / below.columns)
-                }
-            };
-            let value = |i: usize| match level {
-                0 => Self::value(&self.cells[i]),
-                _ => self.levels[level - 1].best[i],
-            };
-            let inside = (by..(by + BLOCK).min(below_rows))
-                .flat_map(|y| (bx..(bx + BLOCK).min(below_columns)).map(move |x| y * below_columns + x));
-            block = inside.into_iter().find(|&i| value(i) == best)?;
+            let below = &self.levels[level - 1];
+            let rows = below.best.len() / below.columns;
+            let mut inside = (by..(by + BLOCK).min(rows))
+                .flat_map(|y| (bx..(bx + BLOCK).min(below.columns)).map(move |x| y * below.columns + x));
+            block = inside.find(|&i| below.best[i] == best)?;
         }
-        Some(Circle { center: self.middle(block), radius: f64::from(best) })
+        let cell = (block * BLOCK * BLOCK..(block + 1) * BLOCK * BLOCK).find(|&i| self.value(i) == best)?;
+        Some(Circle { center: self.middle(cell), radius: f64::from(best) })
     }
 
     /// The middle of the widest place.
     pub fn widest(&self) -> Option<Point> {
-        let inside = (0..self.cells.len()).filter(|&i| self.cells[i].nearest != OUTSIDE);
+        let inside = (0..self.near.len()).filter(|&i| self.near[i].by != OUTSIDE);
         // Where all is equally far, as in the open plane, the middle.
         let center = self.origin + 0.5 * self.cell * Vec2::new(self.columns as f64, self.rows as f64);
         inside
             .max_by(|&a, &b| {
                 let far = |i: usize| center.distance(self.middle(i));
-                let of = |i: usize| self.cells[i].distance;
+                let of = |i: usize| self.near[i].distance;
                 of(a).total_cmp(&of(b)).then(far(b).total_cmp(&far(a)))
             })
             .map(|i| self.middle(i))
@@ -286,12 +413,12 @@ impl Space {
         let cells = rows.flat_map(|y| (step / 2..self.columns).step_by(step).map(move |x| (x, y)));
         let mut best: Option<(f64, Point)> = None;
         for (x, y) in cells {
-            let i = y * self.columns + x;
-            if self.cells[i].nearest == OUTSIDE {
+            let i = self.number(x, y);
+            if self.near[i].by == OUTSIDE {
                 continue;
             }
             let at = self.middle(i);
-            let width = f64::from(self.cells[i].distance).min(other(at));
+            let width = f64::from(self.near[i].distance).min(other(at));
             if best.is_none_or(|(most, _)| width > most + 1e-9) {
                 best = Some((width, at));
             }
@@ -303,10 +430,10 @@ impl Space {
     pub fn farthest(&self, towards: Vec2) -> Option<Point> {
         // Room for a dot of the paper's.
         const OFF: f32 = 4.0;
-        let widest = self.cells.iter().filter(|cell| cell.nearest != OUTSIDE).map(|cell| cell.distance);
-        let off = (0.6 * widest.fold(0.0, f32::max)).min(OFF);
-        let inside = (0..self.cells.len())
-            .filter(|&i| self.cells[i].nearest != OUTSIDE && self.cells[i].distance > off);
+        let widest = self.near.iter().map(|near| near.distance).fold(0.0, f32::max);
+        let off = (0.6 * widest).min(OFF);
+        let inside =
+            (0..self.near.len()).filter(|&i| self.near[i].by != OUTSIDE && self.near[i].distance > off);
         let along = |i: usize| self.middle(i).to_vec2().dot(towards);
         inside.max_by(|&a, &b| along(a).total_cmp(&along(b)).then(b.cmp(&a))).map(|i| self.middle(i))
     }
@@ -315,42 +442,37 @@ impl Space {
     /// exclude list.
     pub fn view(&self, smallest: f64) -> (Vec<Circle>, Vec<Point>) {
         let is_peak = |i: &usize| {
-            let value = Self::value(&self.cells[*i]);
-            f64::from(value) > smallest && self.beside(*i).all(|j| Self::value(&self.cells[j]) <= value)
+            let value = self.value(*i);
+            let (x, y) = self.column_row(*i);
+            f64::from(value) > smallest
+                && self.beside(x, y).all(|(x, y)| self.value(self.number(x, y)) <= value)
         };
-        let circle = |i: usize| Circle { center: self.middle(i), radius: f64::from(self.cells[i].distance) };
-        let circles = (0..self.cells.len()).filter(is_peak).map(circle).collect();
+        let circle = |i: usize| Circle { center: self.middle(i), radius: f64::from(self.near[i].distance) };
+        let circles = (0..self.near.len()).filter(is_peak).map(circle).collect();
         (circles, self.excluded.iter().flatten().copied().collect())
     }
 
     /// Puts the middle of a cell on the exclude list. The cells whose circles it lies in hang
     /// together, because distances change no faster than places.
     pub fn exclude(&mut self, at: Point) {
-        let Some(start) = self.index(at) else { return };
+        let Some((x, y)) = self.place(at) else { return };
         let number = self.excluded.len() as u32;
         self.excluded.push(Some(at));
-        let block = self.block_of(start);
-        self.excluded_in[block].push(number);
-        let mut queue = std::mem::take(&mut self.queue);
-        queue.push(start);
+        self.excluded_in[y / BLOCK * self.levels[0].columns + x / BLOCK].push(number);
+        let mut queue = vec![(x, y)];
         let mut next = 0;
-        while let Some(&index) = queue.get(next) {
+        while let Some(&(x, y)) = queue.get(next) {
             next += 1;
-            let distance = at.distance(self.middle(index)) as f32;
-            let cell = &mut self.cells[index];
-            if next > 1 && (distance > cell.distance || distance >= cell.excluded) {
+            let index = self.number(x, y);
+            let distance = at.distance(self.middle_at(x, y)) as f32;
+            let known = self.exclusion(index);
+            let is_reached = distance <= self.near[index].distance && distance < known.distance;
+            if next > 1 && !is_reached || known.by == number {
                 continue;
             }
-            if cell.excluded_by == number {
-                continue;
-            }
-            cell.excluded = distance;
-            cell.excluded_by = number;
-            self.touch(index);
-            queue.extend(self.beside(index));
+            self.set_exclusion(index, Exclusion { distance, by: number });
+            queue.extend(self.beside(x, y));
         }
-        queue.clear();
-        self.queue = queue;
     }
 
     /// Takes the points within `radius` off the exclude list.
@@ -374,7 +496,7 @@ impl Space {
             });
         }
         for (number, point) in freed {
-            if let Some(start) = point.and_then(|point| self.index(point)) {
+            if let Some(start) = point.and_then(|point| self.place(point)) {
                 self.free(number, start);
             }
         }
@@ -382,11 +504,9 @@ impl Space {
 
     /// Clears the exclude list.
     pub fn readmit_all(&mut self) {
-        for index in 0..self.cells.len() {
-            if self.cells[index].excluded_by != NONE {
-                self.cells[index].excluded_by = NONE;
-                self.cells[index].excluded = f32::INFINITY;
-                self.touch(index);
+        for block in 0..self.exclusions.len() {
+            if self.exclusions[block].take().is_some() {
+                self.touch(block * BLOCK * BLOCK);
             }
         }
         self.excluded.clear();
@@ -394,37 +514,38 @@ impl Space {
     }
 
     /// Cells that a point was nearest to look for another.
-    fn free(&mut self, number: u32, start: usize) {
+    fn free(&mut self, number: u32, start: (usize, usize)) {
         let mut cells = vec![start];
         let mut largest = 0.0_f32;
         let mut next = 0;
-        while let Some(&index) = cells.get(next) {
+        while let Some(&(x, y)) = cells.get(next) {
             next += 1;
-            let cell = &mut self.cells[index];
-            if cell.excluded_by != number {
+            let index = self.number(x, y);
+            if self.exclusion(index).by != number {
                 continue;
             }
-            cell.excluded_by = NONE;
-            cell.excluded = f32::INFINITY;
-            largest = largest.max(cell.distance);
-            cells.extend(self.beside(index));
+            self.set_exclusion(index, FREE);
+            largest = largest.max(self.near[index].distance);
+            cells.extend(self.beside(x, y));
         }
         let reach = f64::from(largest).max(0.0);
-        let others = self.listed_near(self.middle(start), 2.0 * reach);
-        for index in cells {
-            let at = self.middle(index);
-            let cell = &mut self.cells[index];
-            if cell.excluded_by != NONE {
+        let others = self.listed_near(self.middle_at(start.0, start.1), 2.0 * reach);
+        for (x, y) in cells {
+            let index = self.number(x, y);
+            if self.exclusion(index).by != NONE {
                 continue;
             }
+            let at = self.middle_at(x, y);
+            let mut nearest = FREE;
             for &(number, point) in &others {
                 let distance = point.distance(at) as f32;
-                if distance <= cell.distance && distance < cell.excluded {
-                    cell.excluded = distance;
-                    cell.excluded_by = number;
+                if distance <= self.near[index].distance && distance < nearest.distance {
+                    nearest = Exclusion { distance, by: number };
                 }
             }
-            self.touch(index);
+            if nearest.by != NONE {
+                self.set_exclusion(index, nearest);
+            }
         }
     }
 
@@ -445,10 +566,127 @@ impl Space {
     }
 }
 
-/// For every cell of a grid the distance of its middle to the boundary of a region, 0 outside.
-/// Two sweeps hand each cell the nearest edges of its neighbours, so that distances are to edges and
-/// not to cells.
-pub(super) fn inside_distances(region: &Region, bounds: Rect, cell: f64) -> Vec<f32> {
+#[inline]
+fn cell_number(x: usize, y: usize, block_columns: usize) -> usize {
+    let block = y / BLOCK * block_columns + x / BLOCK;
+    block * BLOCK * BLOCK + y % BLOCK * BLOCK + x % BLOCK
+}
+
+/// Room at two scales: all of it in coarse cells, and what is near to something in fine ones. The first
+/// elements of a large container change distances all over it, which would cost too much in fine cells.
+#[derive(Clone, Debug)]
+pub(super) struct Room {
+    pub fine: Space,
+    coarse: Space,
+}
+
+impl Room {
+    /// Coarse cells along the side of a fine one.
+    const COARSE: f64 = 3.0;
+    /// Distances up to so many fine cells are known there.
+    const NEAR: f64 = 16.0;
+    /// Circles larger than so many fine cells are looked for in the coarse ones, whose middles may be
+    /// as far from a circle's as the difference allows.
+    const LARGE: f64 = 12.0;
+
+    /// A circle that overlaps its own images by more than so many fine cells is of no use to any rule;
+    /// one that does by less leads growth up to the seam.
+    const SEAM: f64 = 7.0;
+
+    /// The room in a region, or all over a box, between the images of symmetric growth.
+    pub fn new(region: Option<&Region>, bounds: Rect, cell: f64, images: &[Affine]) -> Self {
+        let to_images = |p: Point| images[1..].iter().map(move |&by| 0.5 * p.distance(by * p));
+        let fine_cell = cell;
+        let space = |cell: f64, most: f32| {
+            let (columns, rows) = Space::grid(bounds, cell);
+            let mut inside = match region {
+                Some(region) => inside_distances(region, bounds, cell, most),
+                None => vec![most; columns * rows],
+            };
+            if images.len() > 1 {
+                for (i, distance) in inside.iter_mut().enumerate() {
+                    let middle = Vec2::new((i % columns) as f64 + 0.5, (i / columns) as f64 + 0.5);
+                    let wall = to_images(bounds.origin() + cell * middle).fold(f64::INFINITY, f64::min);
+                    *distance = distance.min((wall + Self::SEAM * fine_cell) as f32);
+                }
+            }
+            Space::new(bounds, cell, &inside)
+        };
+        Room { fine: space(cell, (Self::NEAR * cell) as f32), coarse: space(Self::COARSE * cell, f32::MAX) }
+    }
+
+    /// Side of a fine cell.
+    pub fn cell(&self) -> f64 {
+        self.fine.cell
+    }
+
+    /// Distance from a place, about, to what is nearest; `None` outside.
+    pub fn distance(&self, at: Point) -> Option<f64> {
+        let near = self.fine.distance(at)?;
+        let is_known = near < (Self::NEAR - 1.0) * self.fine.cell;
+        if is_known { Some(near) } else { self.coarse.distance(at).or(Some(near)) }
+    }
+
+    /// As [`Space::add`].
+    pub fn add(&mut self, piece: &Piece, element: u32, only: bool) {
+        self.fine.add(piece, element, only);
+        self.coarse.add(piece, element, only);
+    }
+
+    /// As [`Space::largest`].
+    pub fn largest(&mut self, smallest: f64) -> Option<Circle> {
+        let large = self.coarse.largest(smallest.max(Self::LARGE * self.fine.cell));
+        large.or_else(|| self.fine.largest(smallest))
+    }
+
+    /// As [`Space::exclude`].
+    pub fn exclude(&mut self, at: Point) {
+        self.fine.exclude(at);
+        self.coarse.exclude(at);
+    }
+
+    /// As [`Space::readmit`].
+    pub fn readmit(&mut self, at: Point, radius: f64) {
+        self.fine.readmit(at, radius);
+        self.coarse.readmit(at, radius);
+    }
+
+    /// As [`Space::readmit_all`].
+    pub fn readmit_all(&mut self) {
+        self.fine.readmit_all();
+        self.coarse.readmit_all();
+    }
+
+    /// As [`Space::view`], of circles of all sizes.
+    pub fn view(&self, smallest: f64) -> (Vec<Circle>, Vec<Point>) {
+        let large = Self::LARGE * self.fine.cell;
+        let (mut circles, excluded) = self.fine.view(smallest);
+        circles.retain(|circle| circle.radius <= large);
+        circles.extend(self.coarse.view(large).0);
+        (circles, excluded)
+    }
+
+    /// As [`Space::widest`].
+    pub fn widest(&self) -> Option<Point> {
+        self.coarse.widest().or_else(|| self.fine.widest())
+    }
+
+    /// As [`Space::widest_by`].
+    pub fn widest_by(&self, other: impl Fn(Point) -> f64) -> Option<Point> {
+        self.coarse.widest_by(other)
+    }
+
+    /// As [`Space::farthest`].
+    pub fn farthest(&self, towards: Vec2) -> Option<Point> {
+        self.coarse.farthest(towards).or_else(|| self.fine.farthest(towards))
+    }
+}
+
+/// For every cell of a grid the distance of its middle to the boundary of a region, `most` at most and
+/// 0 outside.
+/// Cells hand the edges that they are nearest to on to their neighbours, so that distances are to edges
+/// and not to cells.
+fn inside_distances(region: &Region, bounds: Rect, cell: f64, most: f32) -> Vec<f32> {
     let (columns, rows) = Space::grid(bounds, cell);
     let edges: Vec<(Point, Point)> = region
         .contours()
@@ -456,20 +694,20 @@ pub(super) fn inside_distances(region: &Region, bounds: Rect, cell: f64) -> Vec<
         .flat_map(|contour| (0..contour.len()).map(move |i| (contour[i], contour[(i + 1) % contour.len()])))
         .collect();
     let inside = covered(region.contours(), bounds.origin(), cell, columns, rows);
-    let middle = |i: usize| {
-        let (x, y) = ((i % columns) as f64 + 0.5, (i / columns) as f64 + 0.5);
-        bounds.origin() + cell * Vec2::new(x, y)
-    };
     let mut nearest = vec![u32::MAX; columns * rows];
-    let mut distances = vec![f32::INFINITY; columns * rows];
-    let take = |nearest: &mut [u32], distances: &mut [f32], i: usize, edge: u32| {
-        if edge == u32::MAX || nearest[i] == edge {
+    let mut distances = vec![most; columns * rows];
+    let mut queue: Vec<(u32, u32)> = Vec::new();
+    let mut take = |queue: &mut Vec<(u32, u32)>, nearest: &mut [u32], x: usize, y: usize, edge: u32| {
+        let i = y * columns + x;
+        if nearest[i] == edge {
             return;
         }
         let (a, b) = edges[edge as usize];
-        let distance = point_segment(middle(i), a, b) as f32;
+        let middle = bounds.origin() + cell * Vec2::new(x as f64 + 0.5, y as f64 + 0.5);
+        let distance = point_segment(middle, a, b) as f32;
         if distance < distances[i] {
             (nearest[i], distances[i]) = (edge, distance);
+            queue.push((x as u32, y as u32));
         }
     };
     for (number, &(a, b)) in edges.iter().enumerate() {
@@ -478,55 +716,26 @@ pub(super) fn inside_distances(region: &Region, bounds: Rect, cell: f64) -> Vec<
             for (dx, dy) in [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)] {
                 let (x, y) = (x + dx, y + dy);
                 if x >= 0.0 && y >= 0.0 && x < columns as f64 && y < rows as f64 {
-                    let i = y as usize * columns + x as usize;
-                    take(&mut nearest, &mut distances, i, number as u32);
+                    take(&mut queue, &mut nearest, x as usize, y as usize, number as u32);
                 }
             }
         });
     }
-    for is_back in [false, true] {
-        for step in 0..columns * rows {
-            let i = if is_back { columns * rows - 1 - step } else { step };
-            if !inside[i] {
-                continue;
-            }
-            let (x, y) = (i % columns, i / columns);
-            let (left, right) = (x > 0, x + 1 < columns);
-            let (up, down) = (y > 0, y + 1 < rows);
-            let sides = match is_back {
-                false => [
-                    (left, i.wrapping_sub(1)),
-                    (up, i.wrapping_sub(columns)),
-                    (up && left, i.wrapping_sub(columns + 1)),
-                    (up && right, i.wrapping_sub(columns).wrapping_add(1)),
-                ],
-                true => [
-                    (right, i + 1),
-                    (down, i + columns),
-                    (down && left, (i + columns).wrapping_sub(1)),
-                    (down && right, i + columns + 1),
-                ],
-            };
-            for (_, beside) in sides.into_iter().filter(|side| side.0) {
-                let edge = nearest[beside];
-                take(&mut nearest, &mut distances, i, edge);
-            }
-        }
-        // A row's cells may be nearer to what is on their other side.
-        for row in 0..rows {
-            for step in 1..columns {
-                let x = if is_back { step } else { columns - 1 - step };
-                let i = row * columns + x;
-                let beside = if is_back { i - 1 } else { i + 1 };
-                if inside[i] {
-                    let edge = nearest[beside];
-                    take(&mut nearest, &mut distances, i, edge);
+    let mut next = 0;
+    while let Some(&(x, y)) = queue.get(next) {
+        next += 1;
+        let (x, y) = (x as usize, y as usize);
+        let edge = nearest[y * columns + x];
+        for y in y.saturating_sub(1)..(y + 2).min(rows) {
+            for x in x.saturating_sub(1)..(x + 2).min(columns) {
+                if inside[y * columns + x] {
+                    take(&mut queue, &mut nearest, x, y, edge);
                 }
             }
         }
     }
     for (distance, inside) in distances.iter_mut().zip(inside) {
-        if !inside || !distance.is_finite() {
+        if !inside {
             *distance = 0.0;
         }
     }

@@ -2,7 +2,7 @@
 
 use super::index::{Index, Placed};
 use super::piece::{Kind, Piece, Proxy};
-use super::space::{Circle, Space};
+use super::space::{Circle, Room};
 use crate::geom::region::Region;
 use kurbo::{Affine, Point, Rect};
 use rhai::Dynamic;
@@ -53,7 +53,7 @@ pub(super) struct World {
     pub placed: usize,
     /// What the rule has declared as its children with `new_child`, beside the static ones.
     pub children: Vec<u32>,
-    pub space: Space,
+    pub space: Room,
     index: Index,
     /// Where ornament may be; `None` where it repeats all over the plane.
     pub region: Option<Region>,
@@ -75,16 +75,17 @@ pub(super) struct Candidate {
 }
 
 impl World {
-    pub fn new(kinds: Vec<ElementKind>, space: Space, region: Option<Region>, bounds: Rect) -> Self {
-        // About as many cells as elements that fill it.
-        let side = (bounds.area() / 4000.0).sqrt().max(1e-9);
+    pub fn new(kinds: Vec<ElementKind>, space: Room, region: Option<Region>, bounds: Rect) -> Self {
+        // About as large as what usually grows.
+        const SIDE: f64 = 12.0;
+        let side = SIDE * space.cell();
         World {
             kinds,
             elements: Vec::new(),
             placed: 0,
             children: Vec::new(),
             index: Index::new(bounds, side),
-            tolerance: 0.1 * space.cell,
+            tolerance: 0.1 * space.cell(),
             space,
             region,
             bounds,
@@ -188,14 +189,15 @@ impl World {
             .proxies
             .iter()
             .flatten()
-            .flat_map(|proxy| proxy.pieces(0.5 * self.space.cell))
+            .flat_map(|proxy| proxy.pieces(0.5 * self.space.cell()))
             .collect();
+        let is_only = coarse.len() == 1 && self.images.len() == 1;
         let around = self.bounds.inflate(0.6 * self.bounds.width(), 0.6 * self.bounds.height());
         for (image, &by) in self.images.iter().enumerate() {
             for piece in &coarse {
                 let piece = if image == 0 { piece.clone() } else { piece.moved(by) };
                 if image == 0 || piece.bounds().overlaps(around) {
-                    self.space.add(&piece, element);
+                    self.space.add(&piece, element, is_only);
                 }
             }
             for piece in &pieces {
@@ -396,7 +398,7 @@ impl World {
                 return 0.0;
             }
             let mut places = Vec::new();
-            piece.along(self.space.cell, |p| places.push(p));
+            piece.along(self.space.cell(), |p| places.push(p));
             if let Some(region) = &self.region {
                 least = places.iter().fold(least, |least, &p| least.min(region.distance(p, reach)));
             }

@@ -99,7 +99,7 @@ fn word(source: &RuleText, rest: &str, at: usize, last: Option<&Token>) -> Resul
     if c.is_alphabetic() || c == '_' {
         return Ok((Kind::Name, run(&is_word)));
     }
-    let digit_follows = rest[1..].starts_with(|c: char| c.is_ascii_digit());
+    let digit_follows = rest[c.len_utf8()..].starts_with(|c: char| c.is_ascii_digit());
     if c.is_ascii_digit() || c == '.' && digit_follows && !last.is_some_and(|last| last.is(")")) {
         return Ok((Kind::Number, number(rest)));
     }

@@ -259,7 +259,7 @@ fn is_in_the_way(shared: &Shared, element: u32) -> bool {
     let mut state = shared.borrow_mut();
     let world = &mut state.world;
     let proxies = world.elements.get(element as usize).map(|e| e.proxies.clone()).unwrap_or_default();
-    let tolerance = 0.1 * world.space.cell;
+    let tolerance = 0.1 * world.space.cell();
     let pieces: Vec<Piece> = proxies.iter().flatten().flat_map(|proxy| proxy.pieces(tolerance)).collect();
     !pieces.iter().all(|piece| world.is_inside(piece)) || world.overlaps(&pieces, u32::MAX, false)
 }
