@@ -246,6 +246,95 @@ look branch: art vine, width 1.5
     save("targets", 430, 410, "\n".join(body + [seed]), metadata)
 
 
+SCROLLS = """
+fn foot(line, place) {
+    let best = 0.0;
+    let least = 1e9;
+    let k = 0;
+    while k <= 8 {
+        let d = distance(line.at(k / 8.0), place);
+        if d < least { least = d; best = k / 8.0; }
+        k += 1;
+    }
+    best
+}
+
+fn scroll(from, center, hand, width) {
+    let step = PI() / 4.0;
+    let shrink = 0.885;
+    let radius = distance(from, center);
+    let spoke = from - center;
+    let pitch = atan(-ln(shrink) / step);
+    let at = from;
+    let whole = radius;
+    while radius > max(0.8, 0.16 * whole) {
+        let next = spoke + hand * step;
+        let to = center.offset(next, radius * shrink);
+        let piece = add("arm");
+        piece.set(at, spoke + hand * (PI() / 2.0 + pitch), 0.347, to, next + hand * (PI() / 2.0 + pitch), 0.347);
+        piece.hand = hand;
+        piece.width = width * (0.3 + 0.7 * radius / whole);
+        at = to;
+        spoke = next;
+        radius *= shrink;
+    }
+}
+
+rule arm -> {
+    if goal.radius < 2.0 { return FAILURE; }
+    let t = foot(parent, goal.center);
+    let from = parent.at(t);
+    let hand = if parent.tangent(t).cross(goal.center - from) > 0.0 { 1 } else { -1 };
+    if hand == parent.hand && goal.radius > 3.0 { return FAILURE; }
+    let size = min(min(distance(from, goal.center), goal.radius), 14.0);
+    let width = 0.4 + size / 14.0;
+    scroll(from, from.offset(goal.center - from, size), hand, min(width, max(parent.width, 0.7 * width)));
+}
+"""
+
+
+def corners():
+    """A frame with a blossom of its own for every corner, and scrolls that leave them."""
+    rules = (
+        """// Corners first (000 2.1.3): a blossom in each, as large as fits, then scrolls from blossom to blossom.
+smallest 1.1
+element seed: point
+element rose: circle
+element arm: bezier, hand = 1, width = 1.0
+
+rule seed -> {
+    parent.sterile = true;
+    for corner in corners() {
+        // The outer corners of the frame are where the way inside stays inside for longest.
+        let size = 8.0;
+        let at = corner.at.offset(corner.inwards, size * 1.52);
+        if boundary_distance(at) < size * 1.02 { continue; }
+        let rose = add("rose");
+        rose.set(at, size);
+    }
+}
+
+rule rose -> {
+    if goal.radius < 2.0 { return FAILURE; }
+    let towards = goal.center - parent.center;
+    let from = parent.center.offset(towards, parent.radius);
+    let size = min(goal.radius, 14.0);
+    let hand = if parent.children % 2 == 0 { 1 } else { -1 };
+    scroll(from, from.offset(towards, size), hand, 0.4 + size / 14.0);
+}
+"""
+        + SCROLLS
+        + """
+look arm: art stem, width 1.2, thick width, join
+look rose: art peony
+"""
+    )
+    metadata = f'<metadata><rinceau:rules name="corners">\n{html.escape(rules, quote=False)}</rinceau:rules></metadata>\n'
+    d = "M10,10H410V570H10ZM90,90V490H330V90Z"
+    seed = '<circle id="start" class="rinceau-seed" cx="210" cy="50" r="2" fill="none"/>'
+    save("corners", 420, 580, panel("frame", d, rules="corners") + "\n" + seed, metadata)
+
+
 def drawn():
     """The drawing's own blossom and leaf for the elements of a pattern."""
     body = [
@@ -266,4 +355,5 @@ if __name__ == "__main__":
     border()
     styles()
     targets()
+    corners()
     drawn()

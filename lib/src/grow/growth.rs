@@ -105,10 +105,6 @@ pub(super) fn grow(
                 grown.failed += 1;
                 world.space.exclude(circle.center);
             }
-            Applied::Late => {
-                grown.complete = false;
-                break;
-            }
         }
         if world.placed >= settings.most {
             grown.full = true;

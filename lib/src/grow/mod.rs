@@ -3,15 +3,15 @@
 //! Michael T. Wong, Douglas E. Zongker, David H. Salesin: *Computer-Generated Floral Ornament*,
 //! SIGGRAPH 1998.
 //!
-//! 1. Read a rule file (000 4.2, Appendix A): [`rules`].
-//! 2. Measure each container, and start from seeds (4.1; W-073, W-103): [`space`], [`symmetry`].
+//! 1. Read a rule file (000 4.2, Appendix A): `rules`.
+//! 2. Measure each container, and start from seeds (4.1; W-073, W-103): `space`, `symmetry`.
 //! 3. Again and again find the largest empty circle that touches the ornament, and let the elements
-//!    near it try their rules (4.1; W-090 to W-104): [`growth`], [`world`].
-//! 4. Draw the elements, apart from all that (3.2; W-064, W-084 to W-086): [`draw`].
+//!    near it try their rules (4.1; W-090 to W-104): `growth`, `world`.
+//! 4. Draw the elements, apart from all that (3.2; W-064, W-084 to W-086): `draw`.
 //!
 //! Departures, with their reasons where they happen: exact distances instead of a buffer and inflated
-//! circles ([`space`]); children that would leave the shape or lie over others fail, whatever their
-//! rule says ([`world`]); looks are declared, not programmed ([`draw`]), since an artist can choose
+//! circles (`space`); children that would leave the shape or lie over others fail, whatever their
+//! rule says (`world`); looks are declared, not programmed (`draw`), since an artist can choose
 //! one. Taxonomies (W-004, W-005) and manifolds (W-132) are not of this plane.
 
 mod draw;
@@ -204,7 +204,7 @@ impl One<'_> {
         world.set_images(images);
         let seeds = self.seeds(&world, unit);
         let stems = self.stems(unit);
-        let shared = rules.start(State::new(world, rng.fork(), self.targets(unit)), None)?;
+        let shared = rules.start(State::new(world, rng.fork(), self.targets(unit)))?;
         let placed = plant(&rules, &shared, &seeds, &stems);
         for seed in 0..placed {
             growth::sprout(&mut rules, &shared, seed as u32)?;

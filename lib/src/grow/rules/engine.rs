@@ -12,9 +12,8 @@ use crate::rng::Rng;
 use rhai::packages::{Package, StandardPackage};
 use rhai::{AST, Dynamic, Engine, EvalAltResult, Position, Scope};
 use rinceau_format::Error;
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::rc::Rc;
-use std::time::Instant;
 
 /// Steps of one application of a rule at most.
 pub const MOST_OPERATIONS: u64 = 200_000;
@@ -81,8 +80,6 @@ pub enum Applied {
     Placed,
     /// It failed, or its children have no room.
     Failed,
-    /// The time ran out within it.
-    Late,
 }
 
 /// The rules of a file, ready to be applied.
@@ -98,7 +95,6 @@ pub struct Rules {
     /// Variables that stay from one application to the next.
     kept: usize,
     shared: Option<Shared>,
-    end: Rc<Cell<Option<Instant>>>,
 }
 
 impl Rules {
@@ -107,8 +103,7 @@ impl Rules {
     /// Errors: what is not understood, with line and column of the file.
     pub fn read(source: RuleText) -> Result<Self, Error> {
         let file = file::read(&source)?;
-        let end = Rc::new(Cell::new(None));
-        let engine = fenced(&end);
+        let engine = fenced();
         let globals = compiled(&engine, &source, &file.globals, "the declarations")?;
         let functions = globals.clone_functions_only();
         let mut rules = Vec::new();
@@ -131,7 +126,7 @@ impl Rules {
             });
         }
         let (scope, shared) = (Scope::new(), None);
-        Ok(Rules { engine, source, file, globals, rules, by_kind, scope, kept: 0, shared, end })
+        Ok(Rules { engine, source, file, globals, rules, by_kind, scope, kept: 0, shared })
     }
 
     /// The element types of the file.
@@ -179,10 +174,9 @@ impl Rules {
     /// values.
     ///
     /// Errors: what goes wrong in the declarations.
-    pub fn start(&mut self, state: State, end: Option<Instant>) -> Result<Shared, Error> {
+    pub fn start(&mut self, state: State) -> Result<Shared, Error> {
         let shared: Shared = Rc::new(RefCell::new(state));
-        self.end.set(end);
-        let mut engine = fenced(&self.end);
+        let mut engine = fenced();
         values::register(&mut engine, &shared);
         queries::register(&mut engine, &shared);
         self.engine = engine;
@@ -191,9 +185,7 @@ impl Rules {
         scope.push_constant("FAILURE", false);
         scope.push_constant("M_PI", std::f64::consts::PI);
         scope.push_constant("PI", std::f64::consts::PI);
-        if let Err(error) = self.engine.run_ast_with_scope(&mut scope, &self.globals)
-            && !is_late(&error)
-        {
+        if let Err(error) = self.engine.run_ast_with_scope(&mut scope, &self.globals) {
             return Err(self.failed(&self.file.globals, 0, &error));
         }
         self.kept = scope.len();
@@ -258,9 +250,6 @@ impl Rules {
             }
             Err(error) => {
                 shared.borrow_mut().world.discard();
-                if is_late(&error) {
-                    return Ok(Applied::Late);
-                }
                 return Err(self.failed(&rule.script, rule.at, &error));
             }
         };
@@ -289,7 +278,7 @@ impl Rules {
 }
 
 /// An engine without doors to the outside, and with limits.
-fn fenced(end: &Rc<Cell<Option<Instant>>>) -> Engine {
+fn fenced() -> Engine {
     let mut engine = Engine::new_raw();
     StandardPackage::new().register_into_engine(&mut engine);
     engine.on_print(|_| {}).on_debug(|_, _, _| {});
@@ -303,17 +292,7 @@ fn fenced(end: &Rc<Cell<Option<Instant>>>) -> Engine {
     engine.set_max_functions(1000);
     engine.set_max_variables(2000);
     engine.set_strict_variables(false);
-    let end = Rc::clone(end);
-    engine.on_progress(move |operations| {
-        // The clock is looked at now and then only.
-        let is_late = operations % 4096 == 0 && end.get().is_some_and(|end| Instant::now() >= end);
-        is_late.then_some(Dynamic::UNIT)
-    });
     engine
-}
-
-fn is_late(error: &EvalAltResult) -> bool {
-    matches!(innermost(error).0, EvalAltResult::ErrorTerminated(..))
 }
 
 /// The error itself, and the outermost place that is known of it.
