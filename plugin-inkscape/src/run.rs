@@ -7,6 +7,7 @@ use rinceau::tack::Tacked;
 use rinceau::{Error, GENERATORS, Generator, Values};
 use rinceau_format::{Artwork, Document, Recipe, Role, RuleSet, Scene, Selection};
 use serde_json::json;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -84,17 +85,30 @@ fn add_rules(scene: &mut Scene, generator: &Generator, values: &Values) -> Resul
         let is_known = names.iter().any(|(known, _)| *known == name)
             || scene.rules.iter().any(|rules| rules.name == name);
         if !is_known && (name.ends_with(".rules") || Path::new(&name).is_file()) {
-            let text = std::fs::read_to_string(&name).map_err(|error| {
+            let text = read_rules(Path::new(&name)).map_err(|what| {
                 Error::new(
                     "rules-file",
-                    format!("The rules '{name}' cannot be read: {error}"),
-                    "Check the name of the file; it has to be a text in UTF-8",
+                    format!("The rules '{name}' cannot be read: {what}"),
+                    "Check the name: it has to be a file of text in UTF-8",
                 )
             })?;
             scene.rules.push(RuleSet { name, text });
         }
     }
     Ok(())
+}
+
+fn read_rules(path: &Path) -> Result<String, String> {
+    // One byte more than the generator takes, so that it can say that it is too much.
+    const MOST: u64 = (1 << 18) + 1;
+    let kind = std::fs::metadata(path).map_err(|error| error.to_string())?;
+    if !kind.is_file() {
+        return Err("it is no file".to_owned());
+    }
+    let mut text = String::new();
+    let file = std::fs::File::open(path).map_err(|error| error.to_string())?;
+    file.take(MOST).read_to_string(&mut text).map_err(|error| error.to_string())?;
+    Ok(text)
 }
 
 /// Moves objects by tacks.

@@ -335,6 +335,39 @@ look rose: art peony
     save("corners", 420, 580, panel("frame", d, rules="corners") + "\n" + seed, metadata)
 
 
+def half_open():
+    """A border that keeps to three sides and fades into the page (000 1.1, Figure 2b)."""
+    rules = (
+        """// Close at the left and at the ends, open to the right: growth goes no farther than a wavy line.
+smallest 1.1
+element seed: point
+element arm: bezier, hand = 1, width = 1.0
+
+fn is_open(place) {
+    let p = panel();
+    let across = (place.x - p.left) / p.width;
+    let along = (place.y - p.top) / p.height;
+    // Far into the page at both ends, narrow in between.
+    across > 0.24 + 0.6 * pow((2.0 * along - 1.0).abs(), 3.0) + 0.05 * sin(along * 40.0)
+}
+
+rule seed -> {
+    parent.sterile = true;
+    scroll(parent.center, parent.center.offset(0.3, 9.0), 1, 1.3);
+}
+"""
+        + SCROLLS.replace(
+            "    if goal.radius < 2.0 { return FAILURE; }\n    let t", "    if goal.radius < 1.6 || is_open(goal.center) { return FAILURE; }\n    let t"
+        )
+        + """
+look arm: art stem, width 1.2, thick width, join
+"""
+    )
+    metadata = f'<metadata><rinceau:rules name="half-open">\n{html.escape(rules, quote=False)}</rinceau:rules></metadata>\n'
+    seed = '<circle id="start" class="rinceau-seed" cx="45" cy="290" r="2" fill="none"/>'
+    save("half-open", 420, 580, panel("page", "M10,10H410V570H10Z", rules="half-open") + "\n" + seed, metadata)
+
+
 def drawn():
     """The drawing's own blossom and leaf for the elements of a pattern."""
     body = [
@@ -356,4 +389,5 @@ if __name__ == "__main__":
     styles()
     targets()
     corners()
+    half_open()
     drawn()

@@ -350,8 +350,64 @@ fn a_step_can_be_looked_at() {
     assert!(count("candidate") > 0 && count("placed") > 80 && count("eligible") > 5);
 }
 
+/// What there is when the time is over, and what there may be at most.
+#[test]
+fn growth_ends_when_it_is_told_to() {
+    let large = "<rect id='panel' class='rinceau-container' width='4000' height='4000'/>";
+    let run = |flags: &[&str]| {
+        let folder = support::folder();
+        let report = folder.path().join("report.json");
+        let done = rinceau(["grow", "--rules", "dots", "--rule-unit", "4", "--report"])
+            .arg(&report)
+            .args(flags)
+            .input(svg(large))
+            .succeed();
+        let text = std::fs::read_to_string(&report).unwrap();
+        let report: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let dots = done.text().matches("rinceau:of=\"dot\"").count() / 2;
+        (report["complete"].as_bool().unwrap(), dots)
+    };
+    let (complete, dots) = run(&["--time-limit", "0.7"]);
+    assert!(!complete && dots > 10 && dots < 60_000, "{dots} dots");
+    let (complete, dots) = run(&["--max-elements", "100"]);
+    assert!(!complete && dots > 90 && dots <= 100, "{dots} dots");
+}
+
 mod rules {
     use super::*;
+
+    /// A file with a body for the seed.
+    fn seeded(body: &str) -> Scene {
+        scene_with(&format!(
+            "element seed: point\nelement dot: circle, f = 0\nelement area: polygon\nlet kept = 0;\n{body}"
+        ))
+    }
+
+    /// What is discarded is no more, whoever still knows it.
+    #[test]
+    fn references_do_not_outlive_their_elements() {
+        let body = "rule seed -> dot d { d.set(parent, 3); add(\"dot\"); kept = add(\"dot\"); return FAILURE; }\nrule seed -> dot d { d.set(parent, 3); new_child(kept); }";
+        let error = grown(&seeded(body), &[("rules", "own")], 1).unwrap_err().to_string();
+        assert!(error.contains("the element is no more"), "{error}");
+        // One that was placed stays what it is, although others were not.
+        let body = "rule seed -> dot d { new_element(\"area\"); kept = add(\"dot\"); kept.set(parent.center.offset(0.0, 9), 2); d.set(parent, 3); parent.sterile = true; }\nrule dot -> dot d { if kept.type != \"dot\" || (kept.radius - 2).abs() > 1e-9 { throw \"another\"; } return FAILURE; }";
+        let artwork = grown(&seeded(body), &[("rules", "own")], 1).unwrap();
+        assert_eq!(discs(&artwork, "dot").len(), 2);
+    }
+
+    #[test]
+    fn nothing_is_placed_twice_or_around_a_hole() {
+        let artwork =
+            grown(&seeded("rule seed -> dot d { d.set(parent, 3); }"), &[("rules", "own")], 1).unwrap();
+        assert_eq!(discs(&artwork, "dot").len(), 1, "brothers in one place");
+        let ring =
+            "<path class='rinceau-container' fill-rule='evenodd' d='M0,0H400V400H0ZM180,180V220H220V180Z'/>";
+        let (_, mut scene) = read(svg(ring));
+        let text = "element seed: point\nelement area: polygon\nrule seed -> area a { let c = panel().center; a.set([c.offset(0.785, 20), c.offset(2.356, 20), c.offset(3.927, 20), c.offset(5.498, 20)]); }";
+        scene.rules.push(RuleSet { name: "own".into(), text: text.into() });
+        let error = grown(&scene, &[("rules", "own")], 1).unwrap_err().to_string();
+        assert!(error.contains("Nothing grows"), "{error}");
+    }
 
     fn refusal(rules: &str) -> String {
         grown(&scene_with(rules), &[("rules", "own")], 1).map(|_| ()).unwrap_err().to_string()
@@ -466,8 +522,8 @@ mod rules {
         insta::assert_snapshot!(refusal(&native("let x = ;")), @"The rules 'own', 5:13: the rule cannot be read: unexpected ';'. Correct it there. [bad-rules]");
         insta::assert_snapshot!(refusal(&native("d.set(parent);")), @"The rules 'own', 5:7: a circle is set to a centre and a radius, not to 1 values. Change the rule there. [bad-rules]");
         insta::assert_snapshot!(refusal(&native("d.radius = 4;")), @"The rules 'own', 5:6: the element type 'dot' has no field 'radius' that can be set. Change the rule there. [bad-rules]");
-        insta::assert_snapshot!(refusal(&native("loop {}")), @"The rules 'own', 5:10: the rule takes more than 200000 steps. Let its loops end sooner. [bad-rules]");
-        insta::assert_snapshot!(refusal(&native("let a = []; loop { a.push(a.len()); }")), @"The rules 'own', 5:26: a text, array or map has more than 10000 entries. Keep less in it. [bad-rules]");
+        insta::assert_snapshot!(refusal(&native("loop {}")), @"The rules 'own', 5:10: the rule takes more than 100000 steps. Let its loops end sooner. [bad-rules]");
+        insta::assert_snapshot!(refusal(&native("let a = []; loop { a.push(a.len()); }")), @"The rules 'own', 5:26: a text, array or map has more than 2000 entries. Keep less in it. [bad-rules]");
         insta::assert_snapshot!(refusal(&native("loop { add(\"dot\"); }")), @"The rules 'own', 5:12: the rule makes more than 2000 elements at once. Change the rule there. [bad-rules]");
         insta::assert_snapshot!(refusal(&native("eval(\"1\");")), @"The rules 'own', 5:5: the rule cannot be read: reserved keyword 'eval' is disabled. Correct it there. [bad-rules]");
         insta::assert_snapshot!(refusal(&native("timestamp();")), @"The rules 'own', 5:5: there is no function timestamp(). See docs/rules.md for what rules can call, and with which values. [bad-rules]");
@@ -482,8 +538,19 @@ mod rules {
         insta::assert_snapshot!(refusal("element seed: point\n"), @"The rules 'own', 2:1: there is no rule. Add one. [bad-rules]");
         insta::assert_snapshot!(refusal("element seed: point\nrule seed -> { "), @"The rules 'own', 2:16: the body of the rule has no end. Close it with }. [bad-rules]");
         insta::assert_snapshot!(refusal("element seed: point\nelement seed: point"), @"The rules 'own', 2:9: the element type 'seed' is declared twice. Give one of them another name. [bad-rules]");
-        insta::assert_snapshot!(refusal("element seed: point\nrule seed -> {}\nlook seed: art nothing"), @"No artwork is called 'nothing'. Use one of stem, vine, brush, ribbon, rope, leafy, beads, acanthus, leaf, willow, drop, hook, petal, quote, dot, ring, rosette, daisy, peony, lotus, bud, star, outline, fill or none. [unknown-art]");
+        insta::assert_snapshot!(refusal("element seed: point\nrule seed -> {}\nlook seed: art nothing"), @"The rules 'own', 3:6: no artwork is called 'nothing'. Use stem, vine, brush, ribbon, rope, leafy, beads, acanthus, leaf, willow, drop, hook, petal, quote, dot, ring, rosette, daisy, peony, lotus, bud, star, outline, fill or none; what you draw for a type needs no art. [bad-rules]");
         insta::assert_snapshot!(refusal("element seed: point\nrule seed -> {}\nlook seed: colour red"), @"The rules 'own', 3:12: a look has no 'colour'. Use art, width, size, tone, by, thick or join. [bad-rules]");
+        insta::assert_snapshot!(refusal(&native("sleep(1000);")), @"The rules 'own', 5:5: there is no function sleep (i64). See docs/rules.md for what rules can call, and with which values. [bad-rules]");
+        insta::assert_snapshot!(refusal(&native("clear_excluded(); return FAILURE;")), @"The rules 'own', 5:5: clear_excluded was called 100 times, and nothing has grown. Change the rule there. [bad-rules]");
+        insta::assert_snapshot!(refusal(&native("d.set(parent, 3); 1.0")), @"The rules 'own', 4:6: the rule ends with a value that says neither yes nor no: f64. End it with SUCCESS, with FAILURE, or with a statement and a semicolon. [bad-rules]");
+        insta::assert_snapshot!(refusal(&native("let a = []; a.pad(1000, 1); d.f = a;")), @"The rules 'own', 5:34: the element type 'dot' has no field 'f' that can be set. Change the rule there. [bad-rules]");
+        insta::assert_snapshot!(refusal(&native("d.proxy(-1).set(parent, 3);")), @"The rules 'own', 5:17: proxies are counted from 0. Change the rule there. [bad-rules]");
+        insta::assert_snapshot!(refusal("element seed: point\nlet k = add(\"seed\");\nrule seed -> {}"), @"The rules 'own', 2:9: elements are made by rules, not where variables are declared. Change the rule there. [bad-rules]");
+        insta::assert_snapshot!(refusal("element seed: point, n = 1, n = 2\nrule seed -> {}"), @"The rules 'own', 1:29: the field 'n' is declared twice. Give one of them another name. [bad-rules]");
+        insta::assert_snapshot!(refusal("element seed: point\nrule seed -> {}\nlook seed: thick wide"), @"The rules 'own', 3:6: the element type 'seed' has no field 'wide'. Declare it, or leave it out of the look. [bad-rules]");
+        insta::assert_snapshot!(refusal("element seed: point\nrule seed -> {}\nlook seed: art dot tone 3"), @"The rules 'own', 3:20: a comma is missing before 'tone'. Add it. [bad-rules]");
+        insta::assert_snapshot!(refusal("%element\nseed point\nint element\nint order;\n%endelement\nelement dot: circle\nrule seed -> dot d { oops(); }"), @"The rules 'own', 7:22: there is no function oops(). See docs/rules.md for what rules can call, and with which values. [bad-rules]");
+        insta::assert_snapshot!(refusal(&printed("int a; a = a[a++]++;")), @"The rules 'own', 10:22: counting inside of what is counted. Count before, in a statement of its own. [bad-rules]");
         insta::assert_snapshot!(refusal("grow!"), @"The rules 'own', 1:1: 'grow' means nothing here. Write an element, a rule, a look, smallest, reach, let or fn. [bad-rules]");
     }
 

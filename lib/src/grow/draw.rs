@@ -56,6 +56,7 @@ impl Drawing<'_> {
                 continue;
             }
             let plain = Look {
+                at: 0,
                 kind,
                 art: "outline".into(),
                 width: 0.0,
@@ -76,10 +77,11 @@ impl Drawing<'_> {
         Ok(groups)
     }
 
-    /// Errors: a look calls for artwork that does not exist.
-    pub fn check(&self) -> Result<(), Error> {
+    /// The first look that calls for artwork that does not exist, and what there is.
+    pub fn missing(&self) -> Option<(&Look, String)> {
         let is_art = |look: &&Look| !matches!(look.art.as_str(), "none" | "outline" | "fill");
-        self.looks.iter().filter(is_art).try_for_each(|look| self.arts.named(&look.art).map(|_| ()))
+        let missing = self.looks.iter().filter(is_art).find(|look| self.arts.named(&look.art).is_err());
+        missing.map(|look| (look, self.arts.names()))
     }
 
     fn kind(&self, world: &World, look: &Look, group: &mut Group) -> Result<(), Error> {
@@ -276,7 +278,8 @@ fn line(colour: &str, width: f64) -> Style {
 fn field(world: &World, element: &Element, name: &str) -> Option<f64> {
     let place = world.kinds[element.kind].fields.iter().position(|(field, _)| field == name)?;
     let value = &element.fields[place];
-    value.as_float().ok().or_else(|| value.as_int().ok().map(|n| n as f64))
+    let number = value.as_float().ok().or_else(|| value.as_int().ok().map(|n| n as f64));
+    number.filter(|number| number.abs() < 1e9)
 }
 
 /// From red, the oldest, to purple (000 Figure 14).

@@ -21,7 +21,6 @@ pub(super) struct Settings {
     pub reach: f64,
     /// Smaller circles are not tried.
     pub smallest: f64,
-    pub most: usize,
     /// The step whose choice is to be shown; 0 for none.
     pub debug: usize,
 }
@@ -50,6 +49,20 @@ pub(super) struct Grown {
     /// True if it ended because there were as many elements as allowed.
     pub full: bool,
     pub view: Option<View>,
+    /// Why children were not placed: unset or without sense, outside, over others.
+    pub refused: [usize; 3],
+}
+
+impl Grown {
+    /// Why so little grew, in words.
+    pub fn reasons(&self) -> String {
+        match self.refused {
+            [0, 0, 0] => "every rule that was asked said no".to_owned(),
+            [unset, outside, over] => format!(
+                "of what its rules made, {unset} had no shape or one without sense, {outside} lay outside, and {over} over something else"
+            ),
+        }
+    }
 }
 
 /// Grows until there is no room that anything can grow into.
@@ -89,7 +102,7 @@ pub(super) fn grow(
         };
         let mut applied = Applied::Failed;
         for candidate in candidates.iter().take(MOST_CANDIDATES) {
-            applied = rules.grow(candidate)?;
+            applied = rules.grow(candidate, || progress.step("grow", 0.5))?;
             if applied != Applied::Failed {
                 break;
             }
@@ -101,16 +114,22 @@ pub(super) fn grow(
                 grown.steps += 1;
                 world.space.readmit(circle.center, reach);
             }
+            Applied::Failed if world.is_full => {}
             Applied::Failed => {
                 grown.failed += 1;
                 world.space.exclude(circle.center);
             }
+            Applied::Late => {
+                grown.complete = false;
+                break;
+            }
         }
-        if world.placed >= settings.most {
+        if world.is_full {
             grown.full = true;
             break;
         }
     }
+    grown.refused = shared.borrow_mut().world().refused;
     Ok(grown)
 }
 
@@ -125,7 +144,12 @@ fn share(shared: &Rc<RefCell<State>>) -> f64 {
 /// Lets a seed grow at once, whatever room there is.
 ///
 /// Errors: those of the rules.
-pub(super) fn sprout(rules: &mut Rules, shared: &Rc<RefCell<State>>, seed: u32) -> Result<Applied, Error> {
+pub(super) fn sprout(
+    rules: &mut Rules,
+    shared: &Rc<RefCell<State>>,
+    seed: u32,
+    progress: &mut dyn Progress,
+) -> Result<Applied, Error> {
     let goal = {
         let mut state = shared.borrow_mut();
         let world = state.world();
@@ -133,5 +157,5 @@ pub(super) fn sprout(rules: &mut Rules, shared: &Rc<RefCell<State>>, seed: u32) 
             world.elements[seed as usize].proxies[0].as_ref().map_or(Point::ORIGIN, |proxy| proxy.start());
         Circle { center: at, radius: world.wall_distance(at).max(0.0) }
     };
-    rules.grow(&Candidate { element: seed, goal })
+    rules.grow(&Candidate { element: seed, goal }, || progress.step("grow", 0.0))
 }

@@ -38,7 +38,7 @@ use growth::{Grown, Settings};
 use kurbo::{Affine, CubicBez, PathSeg, Point, Rect, Shape, Vec2};
 use piece::{Kind, Proxy};
 use rinceau_format::{Artwork, Error, Scene};
-use rules::{Rules, State};
+use rules::{Applied, Rules, State};
 use space::Room;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -106,8 +106,10 @@ pub fn generate(
         artwork.complete &= grown.complete;
         if grown.steps == 0 && grown.complete {
             artwork.warnings.push(format!(
-                "{}: nothing of the pattern grows in '{}'",
-                container.source.at, container.source.id
+                "{}: nothing of the pattern grows in '{}': {}",
+                container.source.at,
+                container.source.id,
+                grown.reasons()
             ));
         }
         *counts.entry("steps".into()).or_insert(0.0) += grown.steps as f64;
@@ -115,7 +117,7 @@ pub fn generate(
         if grown.full {
             artwork.complete = false;
             artwork.warnings.push(format!(
-                "{}: the growth in '{}' ended with {} elements, as many as are allowed",
+                "{}: the growth in '{}' ended because there may be {} elements at most",
                 container.source.at, container.source.id, own.max_elements
             ));
         }
@@ -154,7 +156,7 @@ pub fn rule_text(name: &str, scene: &Scene) -> Result<RuleText, Error> {
         Error::new(
             "unknown-rules",
             format!("There are no growth rules called '{name}'"),
-            format!("Use one of {}, or a file of rules", known.join(", ")),
+            format!("Use one of {}, or a file whose name ends in .rules", known.join(", ")),
         )
     })
 }
@@ -176,8 +178,20 @@ impl One<'_> {
         progress: &mut dyn Progress,
     ) -> Result<Option<Grown>, Error> {
         let params = self.params;
-        let mut rules = Rules::read(rule_text(&params.rules, self.scene)?)?;
-        self.drawing(&rules, 1.0).check()?;
+        let text = rule_text(&params.rules, self.scene).map_err(|error| {
+            let container = &self.scene.containers[self.index];
+            let is_own = container.overrides.contains_key("rules");
+            if is_own { error.at(container.source.at) } else { error }
+        })?;
+        let mut rules = Rules::read(text)?;
+        if let Some((look, known)) = self.drawing(&rules, 1.0).missing() {
+            let sentence = format!("no artwork is called '{}'", look.art);
+            return Err(rules.error(
+                look.at,
+                sentence,
+                format!("Use {known}; what you draw for a type needs no art"),
+            ));
+        }
         let area = self.shapes.areas[self.index];
         let px = self.scene.px_per_unit;
         let mut unit = params.rule_unit.to_user(px);
@@ -202,20 +216,35 @@ impl One<'_> {
         let space = Room::new(region.as_ref(), bounds, cell, &images);
         let mut world = World::new(rules.kinds(), space, region, bounds);
         world.set_images(images);
+        world.most = params.max_elements;
         let seeds = self.seeds(&world, unit);
         let stems = self.stems(unit);
         let shared = rules.start(State::new(world, rng.fork(), self.targets(unit)))?;
         let placed = plant(&rules, &shared, &seeds, &stems);
+        let (mut sprouted, mut is_late) = (0, false);
         for seed in 0..placed {
-            growth::sprout(&mut rules, &shared, seed as u32)?;
+            match growth::sprout(&mut rules, &shared, seed as u32, progress)? {
+                Applied::Placed => sprouted += 1,
+                Applied::Failed => {}
+                Applied::Late => is_late = true,
+            }
+            if is_late {
+                break;
+            }
         }
         let settings = Settings {
             reach: params.reach * rules.reach(),
             smallest: params.smallest.max(rules.smallest()).max(cell),
-            most: params.max_elements,
             debug: params.debug,
         };
-        let grown = growth::grow(&mut rules, &shared, &settings, progress)?;
+        let mut grown = growth::grow(&mut rules, &shared, &settings, progress)?;
+        grown.steps += sprouted;
+        grown.complete &= !is_late;
+        if params.debug > 0 && grown.view.is_none() {
+            artwork
+                .warnings
+                .push(format!("Growth ended before step {}: there is nothing to show of it", params.debug));
+        }
         progress.step("draw", 0.0);
         let mut state = shared.borrow_mut();
         let drawing = self.drawing(&rules, unit);

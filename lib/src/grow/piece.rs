@@ -8,6 +8,9 @@ use kurbo::{Affine, Arc, BezPath, CubicBez, ParamCurve, Point, Rect, Shape, Vec2
 /// Points of a polygon at most.
 pub(super) const MOST_CORNERS: usize = 1000;
 
+/// Angle of an arc at most, in radians: a hundred turns.
+const MOST_TURNED: f64 = 630.0;
+
 /// What kind of shape a proxy is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -157,7 +160,7 @@ impl Proxy {
             Proxy::Point(p) => fits(p),
             Proxy::Circle(p, r) => fits(p) && (0.0..LARGEST).contains(r),
             Proxy::Arc(p, r, start, sweep) => {
-                fits(p) && (0.0..LARGEST).contains(r) && start.abs() < LARGEST && sweep.abs() < 1e3
+                fits(p) && (0.0..LARGEST).contains(r) && start.abs() < LARGEST && sweep.abs() < MOST_TURNED
             }
             Proxy::Bezier(c) => [c.p0, c.p1, c.p2, c.p3].iter().all(fits),
             Proxy::Line(a, b) => fits(a) && fits(b),

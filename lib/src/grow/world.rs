@@ -26,6 +26,8 @@ pub struct ElementKind {
 /// An element in the tree (checklist W-071).
 #[derive(Clone, Debug)]
 pub struct Element {
+    /// No other element ever has the same.
+    pub serial: u32,
     /// Index of its type.
     pub kind: usize,
     /// What it grew from.
@@ -61,6 +63,16 @@ pub(super) struct World {
     /// The symmetries of the ornament; the first changes nothing.
     images: Vec<Affine>,
     firing: u32,
+    serial: u32,
+    /// Elements at most; `is_full` once there is no room for more.
+    pub most: usize,
+    pub is_full: bool,
+    /// Corners of polygons that the rule at work has set.
+    pub corners: usize,
+    /// Why children were not placed: unset or without sense, outside, over others.
+    pub refused: [usize; 3],
+    /// How often the exclude list was cleared since something was placed.
+    pub clearings: usize,
     /// Distance that chords keep to curves.
     tolerance: f64,
     /// Distance kept to all but relatives.
@@ -91,6 +103,12 @@ impl World {
             bounds,
             images: vec![Affine::IDENTITY],
             firing: 0,
+            serial: 0,
+            most: usize::MAX,
+            is_full: false,
+            corners: 0,
+            clearings: 0,
+            refused: [0; 3],
             gap: 0.0,
         }
     }
@@ -108,7 +126,9 @@ impl World {
     pub fn fresh(&mut self, kind: usize, parent: u32) -> u32 {
         let of = &self.kinds[kind];
         let generation = self.elements.get(parent as usize).map_or(0, |parent| parent.generation + 1);
+        self.serial += 1;
         self.elements.push(Element {
+            serial: self.serial,
             kind,
             parent,
             children: Vec::new(),
@@ -125,6 +145,18 @@ impl World {
     pub fn discard(&mut self) {
         self.elements.truncate(self.placed);
         self.children.clear();
+        self.corners = 0;
+    }
+
+    /// Where the element of this number is, if it still is. Numbers grow with the place.
+    pub fn find(&self, serial: u32) -> Option<usize> {
+        self.elements.binary_search_by_key(&serial, |element| element.serial).ok()
+    }
+
+    fn refuse(&mut self, why: usize) -> bool {
+        self.refused[why] += 1;
+        self.discard();
+        false
     }
 
     fn pieces(&self, element: u32) -> Vec<Piece> {
@@ -142,27 +174,33 @@ impl World {
                 chosen.push(child);
             }
         }
-        let all: Vec<Vec<Piece>> = chosen.iter().map(|&child| self.pieces(child)).collect();
-        if all.iter().all(Vec::is_empty) {
+        // In the order in which they were made, which is that of their numbers.
+        chosen.sort_unstable();
+        if self.placed + chosen.len() > self.most {
+            self.is_full = true;
             self.discard();
             return false;
+        }
+        let is_sane =
+            |&child: &u32| self.elements[child as usize].proxies.iter().flatten().all(Proxy::is_sane);
+        if !chosen.iter().all(is_sane) {
+            return self.refuse(0);
+        }
+        let all: Vec<Vec<Piece>> = chosen.iter().map(|&child| self.pieces(child)).collect();
+        if all.iter().all(Vec::is_empty) {
+            return self.refuse(0);
         }
         for (&child, pieces) in chosen.iter().zip(&all) {
             let kind = self.elements[child as usize].kind;
-            let is_free = self.kinds[kind].overlaps;
-            let sane = self.elements[child as usize].proxies.iter().flatten().all(Proxy::is_sane);
-            if !sane || !pieces.iter().all(|piece| self.is_inside(piece)) {
-                self.discard();
-                return false;
+            if !pieces.iter().all(|piece| self.is_inside(piece)) {
+                return self.refuse(1);
             }
-            if !is_free && self.overlaps(pieces, parent, true) {
-                self.discard();
-                return false;
+            if !self.kinds[kind].overlaps && self.overlaps(pieces, parent, true) {
+                return self.refuse(2);
             }
         }
         if self.meets_itself(&all, parent) {
-            self.discard();
-            return false;
+            return self.refuse(2);
         }
         let mut kept: Vec<Element> = Vec::with_capacity(chosen.len());
         for &child in &chosen {
@@ -178,6 +216,8 @@ impl World {
         }
         self.placed = self.elements.len();
         self.children.clear();
+        self.corners = 0;
+        self.clearings = 0;
         self.firing += 1;
         true
     }
@@ -227,7 +267,9 @@ impl World {
                 Piece::Segment(a, b) => !crosses(*a, *b),
                 Piece::Area(_) => {
                     let bounds = piece.bounds();
+                    let is_around = |hole: &Vec<Point>| piece.distance(hole[0]) < 0.0;
                     !crosses(bounds.origin(), Point::new(bounds.x1, bounds.y1))
+                        && !region.contours().iter().any(is_around)
                 }
             }
     }
@@ -267,7 +309,10 @@ impl World {
                 let is_thin = matches!((piece, &other.piece), (Piece::Segment(..), Piece::Segment(..)));
                 let most = if is_thin { slack.max(gap) } else { gap - slack };
                 if apart < most {
-                    let is_joint = family.contains(&other.element) && {
+                    // Only lines join: two discs in one place are no joint.
+                    let has_line =
+                        matches!(piece, Piece::Segment(..)) || matches!(other.piece, Piece::Segment(..));
+                    let is_joint = has_line && family.contains(&other.element) && {
                         let at = contact(piece, &other.piece);
                         parent_pieces.iter().any(|parent| parent.distance(at) <= joint + gap)
                     };

@@ -49,13 +49,18 @@ impl Arts {
     /// Errors: there is none.
     pub fn named(&self, name: &str) -> Result<&Art, Error> {
         self.0.iter().find(|art| art.name == name).ok_or_else(|| {
-            let known: Vec<&str> = self.0.iter().map(|art| art.name.as_str()).collect();
             Error::new(
                 "unknown-art",
                 format!("No artwork is called '{name}'"),
-                format!("Use one of {}, outline, fill or none", known.join(", ")),
+                format!("Use {}", self.names()),
             )
         })
+    }
+
+    /// What there is.
+    pub fn names(&self) -> String {
+        let known: Vec<&str> = self.0.iter().map(|art| art.name.as_str()).collect();
+        format!("{}, outline, fill or none", known.join(", "))
     }
 }
 

@@ -9,20 +9,23 @@ use super::{queries, values};
 use crate::grow::space::Circle;
 use crate::grow::world::{Candidate, ElementKind, World};
 use crate::rng::Rng;
-use rhai::packages::{Package, StandardPackage};
-use rhai::{AST, Dynamic, Engine, EvalAltResult, Position, Scope};
+use rhai::packages::{
+    ArithmeticPackage, BasicArrayPackage, BasicIteratorPackage, BasicMapPackage, BasicMathPackage,
+    BasicStringPackage, LogicPackage, MoreStringPackage, Package,
+};
+use rhai::{AST, Array, Dynamic, Engine, EvalAltResult, FnPtr, Position, Scope};
 use rinceau_format::Error;
 use std::cell::RefCell;
 use std::rc::Rc;
 
 /// Steps of one application of a rule at most.
-pub const MOST_OPERATIONS: u64 = 200_000;
+pub const MOST_OPERATIONS: u64 = 100_000;
 /// Functions that call each other at most.
 pub const DEEPEST_CALLS: usize = 40;
 /// Elements that one application of a rule makes at most.
 pub const MOST_CHILDREN: usize = 2000;
 /// Length of texts, arrays and maps of a rule at most.
-pub const LARGEST_VALUE: usize = 10_000;
+pub const LARGEST_VALUE: usize = 2000;
 
 /// What rules and the framework share.
 #[derive(Debug)]
@@ -80,6 +83,8 @@ pub enum Applied {
     Placed,
     /// It failed, or its children have no room.
     Failed,
+    /// The time is over.
+    Late,
 }
 
 /// The rules of a file, ready to be applied.
@@ -145,6 +150,11 @@ impl Rules {
         self.file.kinds.iter().map(kind).collect()
     }
 
+    /// An error at a byte of the file.
+    pub fn error(&self, at: usize, sentence: impl AsRef<str>, remedy: impl AsRef<str>) -> Error {
+        self.source.error(at, sentence, remedy)
+    }
+
     /// How the file wants its elements drawn.
     pub fn looks(&self) -> &[Look] {
         &self.file.looks
@@ -197,11 +207,14 @@ impl Rules {
     /// Tries the rules for an element in the order of the file.
     ///
     /// Errors: what goes wrong in a body, with its line and column.
-    pub fn grow(&mut self, candidate: &Candidate) -> Result<Applied, Error> {
+    pub fn grow(&mut self, candidate: &Candidate, mut go_on: impl FnMut() -> bool) -> Result<Applied, Error> {
         let Some(shared) = self.shared.clone() else { return Ok(Applied::Failed) };
         let kind = shared.borrow().world.elements[candidate.element as usize].kind;
         for i in 0..self.by_kind[kind].len() {
             let rule = self.by_kind[kind][i];
+            if !go_on() {
+                return Ok(Applied::Late);
+            }
             match self.apply(rule, candidate, &shared)? {
                 Applied::Failed => {}
                 ended => return Ok(ended),
@@ -222,15 +235,19 @@ impl Rules {
                 state.world.fresh(kind, candidate.element);
             }
         }
-        let first = shared.borrow().world.placed as u32;
+        let (parent, children): (u32, Vec<u32>) = {
+            let world = &shared.borrow().world;
+            let serials = world.elements[world.placed..].iter().map(|element| element.serial);
+            (world.elements[candidate.element as usize].serial, serials.collect())
+        };
         let scope = &mut self.scope;
-        scope.push("parent", ElementRef(candidate.element));
+        scope.push("parent", ElementRef(parent));
         if rule.uses_proxy {
-            scope.push("proxy_of_parent", ProxyRef { element: candidate.element, proxy: 0 });
+            scope.push("proxy_of_parent", ProxyRef { element: parent, proxy: 0 });
         }
         scope.push("goal", candidate.goal);
         for (j, ((name, &(element, proxy)), child)) in
-            rule.names.iter().zip(&rule.uses).zip(first..).enumerate()
+            rule.names.iter().zip(&rule.uses).zip(children).enumerate()
         {
             if let Some(name) = name {
                 scope.push(name.as_str().to_owned(), ElementRef(child));
@@ -245,8 +262,17 @@ impl Rules {
         let ended = self.engine.eval_ast_with_scope::<Dynamic>(scope, &rule.ast);
         scope.rewind(self.kept);
         let is_success = match ended {
+            Ok(value) if value.is_unit() => true,
+            Ok(value) if value.is_bool() || value.is_int() => {
+                value.as_bool().unwrap_or(false) || value.as_int().is_ok_and(|n| n != 0)
+            }
             Ok(value) => {
-                value.is_unit() || value.as_bool().unwrap_or(false) || value.as_int().is_ok_and(|n| n != 0)
+                shared.borrow_mut().world.discard();
+                return Err(self.source.error(
+                    rule.at,
+                    format!("the rule ends with a value that says neither yes nor no: {}", value.type_name()),
+                    "End it with SUCCESS, with FAILURE, or with a statement and a semicolon",
+                ));
             }
             Err(error) => {
                 shared.borrow_mut().world.discard();
@@ -280,9 +306,26 @@ impl Rules {
 /// An engine without doors to the outside, and with limits.
 fn fenced() -> Engine {
     let mut engine = Engine::new_raw();
-    StandardPackage::new().register_into_engine(&mut engine);
+    // All but the packages that wait, end a rule unseen, or handle bytes.
+    ArithmeticPackage::new().register_into_engine(&mut engine);
+    LogicPackage::new().register_into_engine(&mut engine);
+    BasicStringPackage::new().register_into_engine(&mut engine);
+    BasicIteratorPackage::new().register_into_engine(&mut engine);
+    BasicMathPackage::new().register_into_engine(&mut engine);
+    BasicArrayPackage::new().register_into_engine(&mut engine);
+    BasicMapPackage::new().register_into_engine(&mut engine);
+    MoreStringPackage::new().register_into_engine(&mut engine);
+    // An order that is none makes the library panic.
+    for name in ["sort", "sort_by", "order", "order_by"] {
+        engine.register_fn(name, |_: &mut Array, _: FnPtr| -> Answer<()> {
+            Err(wrong("arrays are sorted by their values alone, not by a function"))
+        });
+    }
     engine.on_print(|_| {}).on_debug(|_, _, _| {});
-    engine.disable_symbol("eval");
+    // What compiles anew, and what grows without a limit.
+    for name in ["eval", "Fn", "curry"] {
+        engine.disable_symbol(name);
+    }
     engine.set_max_operations(MOST_OPERATIONS);
     engine.set_max_call_levels(DEEPEST_CALLS);
     engine.set_max_expr_depths(160, 80);

@@ -54,6 +54,8 @@ pub(super) struct RuleSource {
 /// How elements of a type are drawn (checklist W-064, W-084 to W-086).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Look {
+    /// Byte of the rule file where it stands.
+    pub at: usize,
     /// Index of the type.
     pub kind: usize,
     /// The artwork: a name, `outline`, `fill` or `none`.
@@ -78,6 +80,8 @@ struct Reader<'s, 't> {
     next: usize,
     file: RuleFile,
     names: Vec<String>,
+    /// Fields that looks name: where, and of which type.
+    look_fields: Vec<(usize, usize, [String; 2])>,
 }
 
 /// Reads a rule file.
@@ -96,7 +100,8 @@ pub(super) fn read(source: &RuleText) -> Result<RuleFile, Error> {
         smallest: 0.0,
         reach: 1.0,
     };
-    let mut reader = Reader { source, tokens: &words, next: 0, file, names: Vec::new() };
+    let mut reader =
+        Reader { source, tokens: &words, next: 0, file, names: Vec::new(), look_fields: Vec::new() };
     reader.declare();
     while let Some(token) = reader.peek() {
         reader.item(token)?;
@@ -149,13 +154,15 @@ impl<'t> Reader<'_, 't> {
     /// The names of all element types, so that rules may come before them.
     fn declare(&mut self) {
         let mut depth = 0_i32;
+        let mut is_block = false;
         for pair in self.tokens.windows(2) {
             match pair[0].text {
                 "{" => depth += 1,
                 "}" => depth -= 1,
+                _ if pair[0].kind == Kind::Block => is_block = !pair[0].text.starts_with("%end"),
                 _ => {}
             }
-            let starts = pair[0].is("%element") || depth == 0 && pair[0].is("element");
+            let starts = pair[0].is("%element") || depth == 0 && !is_block && pair[0].is("element");
             if starts && pair[1].kind == Kind::Name {
                 self.names.push(pair[1].text.to_owned());
             }
@@ -190,6 +197,10 @@ impl<'t> Reader<'_, 't> {
             }
             "let" | "const" => self.copied(token, ";"),
             "fn" => self.copied(token, "}"),
+            "art" | "width" | "size" | "tone" | "by" | "thick" | "join" => {
+                self.next -= 1;
+                Err(self.error(format!("a comma is missing before '{}'", token.text), "Add it"))
+            }
             _ => {
                 self.next -= 1;
                 Err(self.error(
@@ -279,7 +290,11 @@ impl<'t> Reader<'_, 't> {
                 text => {
                     let whole =
                         text.parse::<i64>().ok().map(|n| Field::Whole(if is_negative { -n } else { n }));
-                    let number = text.parse::<f64>().ok().map(|n| if is_negative { -n } else { n });
+                    let number = text
+                        .parse::<f64>()
+                        .ok()
+                        .filter(|n| n.is_finite())
+                        .map(|n| if is_negative { -n } else { n });
                     whole.or(number.map(Field::Number))
                 }
             };
@@ -288,6 +303,10 @@ impl<'t> Reader<'_, 't> {
             };
             self.next += 1;
             value = given;
+        }
+        if kind.fields.iter().any(|(known, _)| known == name.text) {
+            let sentence = format!("the field '{}' is declared twice", name.text);
+            return Err(self.source.error(name.at, sentence, "Give one of them another name"));
         }
         kind.fields.push((name.text.to_owned(), value));
         Ok(())
@@ -412,9 +431,11 @@ impl<'t> Reader<'_, 't> {
     }
 
     fn look(&mut self) -> Result<(), Error> {
+        let at = self.at();
         let kind = self.kind("the type that is drawn")?;
         self.accept(":");
         let mut look = Look {
+            at,
             kind,
             art: "outline".into(),
             width: 0.0,
@@ -442,7 +463,11 @@ impl<'t> Reader<'_, 't> {
                     match word.text {
                         "width" => look.width = number,
                         "size" => look.size = number,
-                        _ => look.tone = (number as usize).clamp(1, 3),
+                        _ if [1.0, 2.0, 3.0].contains(&number) => look.tone = number as usize,
+                        _ => {
+                            self.next -= 1;
+                            return Err(self.error("a tone is 1, 2 or 3", "Write one of them"));
+                        }
                     }
                 }
                 other => {
@@ -458,6 +483,11 @@ impl<'t> Reader<'_, 't> {
                 break;
             }
         }
+        let name = &self.names[kind];
+        if self.file.looks.iter().any(|other| other.kind == kind) {
+            return Err(self.source.error(at, format!("'{name}' has two looks"), "Keep one"));
+        }
+        self.look_fields.push((at, kind, [look.by.clone(), look.thick.clone()]));
         self.file.looks.push(look);
         Ok(())
     }
@@ -483,6 +513,18 @@ impl<'t> Reader<'_, 't> {
     }
 
     fn check(&self) -> Result<(), Error> {
+        for (at, kind, fields) in &self.look_fields {
+            let kind = &self.file.kinds[*kind];
+            let is_missing =
+                |name: &&String| !name.is_empty() && !kind.fields.iter().any(|(field, _)| field == *name);
+            if let Some(name) = fields.iter().find(is_missing) {
+                return Err(self.source.error(
+                    *at,
+                    format!("the element type '{}' has no field '{name}'", kind.name),
+                    "Declare it, or leave it out of the look",
+                ));
+            }
+        }
         let seed = self.file.kinds.iter().find(|kind| kind.name == "seed");
         if seed.is_none_or(|seed| seed.proxies != [piece::Kind::Point]) {
             return Err(self.source.error(

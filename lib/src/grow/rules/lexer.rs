@@ -70,7 +70,7 @@ pub(super) fn tokens<'t>(source: &RuleText, text: &'t str) -> Result<Vec<Token<'
     while at < bytes.len() {
         let rest = &text[at..];
         let c = rest.chars().next().unwrap_or(' ');
-        if c.is_whitespace() {
+        if c.is_whitespace() || c == '\u{feff}' {
             at += c.len_utf8();
             continue;
         }
@@ -78,11 +78,11 @@ pub(super) fn tokens<'t>(source: &RuleText, text: &'t str) -> Result<Vec<Token<'
             at += rest.find('\n').unwrap_or(rest.len());
             continue;
         }
-        if rest.starts_with("/*") {
-            let Some(end) = rest.find("*/") else {
+        if let Some(comment) = rest.strip_prefix("/*") {
+            let Some(end) = comment.find("*/") else {
                 return Err(source.error(at, "the comment has no end", "Close it with */"));
             };
-            at += end + 2;
+            at += end + 4;
             continue;
         }
         let (kind, length) = word(source, rest, at, tokens.last())?;
@@ -102,6 +102,12 @@ fn word(source: &RuleText, rest: &str, at: usize, last: Option<&Token>) -> Resul
     let digit_follows = rest[c.len_utf8()..].starts_with(|c: char| c.is_ascii_digit());
     if c.is_ascii_digit() || c == '.' && digit_follows && !last.is_some_and(|last| last.is(")")) {
         return Ok((Kind::Number, number(rest)));
+    }
+    if c == '`' {
+        let end = rest[1..].find('`').ok_or_else(|| {
+            source.error(at, "the text has no end", "Close it with another of these quotes")
+        })?;
+        return Ok((Kind::Text, end + 2));
     }
     if c == '"' || c == '\'' {
         let mut escaped = false;

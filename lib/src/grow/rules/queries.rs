@@ -1,9 +1,9 @@
 //! What rules may ask of their surroundings (000 3.2, 4.2; checklist W-065, W-038 to W-040).
 
 use super::engine::{Answer, MOST_CHILDREN, Shared, wrong};
-use super::values::{Direction, ElementRef, ProxyRef, direction, get, number, point};
+use super::values::{Direction, ElementRef, ProxyRef, direction, get, number, place_of, point};
 use crate::geom::region::Region;
-use crate::grow::piece::Piece;
+use crate::grow::piece::{Piece, Proxy};
 use crate::grow::space::Circle;
 use crate::grow::world::World;
 use kurbo::{Point, Vec2};
@@ -182,9 +182,9 @@ fn register_outline(engine: &mut Engine, shared: &Shared) {
 fn register_ornament(engine: &mut Engine, shared: &Shared) {
     for name in ["intersection", "intersects"] {
         let state = shared.clone();
-        engine.register_fn(name, move |e: ElementRef| -> bool { is_in_the_way(&state, e.0) });
+        engine.register_fn(name, move |e: ElementRef| is_in_the_way(&state, e.0));
         let state = shared.clone();
-        engine.register_fn(name, move |p: ProxyRef| -> bool { is_in_the_way(&state, p.element) });
+        engine.register_fn(name, move |p: ProxyRef| is_in_the_way(&state, p.element));
     }
     let state = shared.clone();
     engine.register_fn("nearest", move |kind: ImmutableString, p: Dynamic| -> Answer<Dynamic> {
@@ -193,7 +193,9 @@ fn register_ornament(engine: &mut Engine, shared: &Shared) {
         let mut state = state.borrow_mut();
         let reach = state.world.bounds.size().to_vec2().hypot();
         let found = state.world.nearest(Some(index), at, reach);
-        Ok(found.map_or(Dynamic::UNIT, |(element, _)| Dynamic::from(ElementRef(element))))
+        Ok(found.map_or(Dynamic::UNIT, |(element, _)| {
+            Dynamic::from(ElementRef(state.world.elements[element as usize].serial))
+        }))
     });
     let state = shared.clone();
     engine.register_fn("nearest", move |p: Dynamic| -> Answer<Dynamic> {
@@ -201,21 +203,19 @@ fn register_ornament(engine: &mut Engine, shared: &Shared) {
         let mut state = state.borrow_mut();
         let reach = state.world.bounds.size().to_vec2().hypot();
         let found = state.world.nearest(None, at, reach);
-        Ok(found.map_or(Dynamic::UNIT, |(element, _)| Dynamic::from(ElementRef(element))))
+        Ok(found.map_or(Dynamic::UNIT, |(element, _)| {
+            Dynamic::from(ElementRef(state.world.elements[element as usize].serial))
+        }))
     });
     let state = shared.clone();
     engine.register_fn("clearance", move |p: ProxyRef, reach: Dynamic| -> Answer<f64> {
         let proxy = get(&state, p)?;
-        let mut state = state.borrow_mut();
-        let without = state.parent;
-        Ok(state.world.clearance(&proxy, without, number(&reach)?.clamp(0.0, 1e6)))
+        clear(&state, &proxy, &reach)
     });
     let state = shared.clone();
     engine.register_fn("clearance", move |e: ElementRef, reach: Dynamic| -> Answer<f64> {
         let proxy = get(&state, ProxyRef { element: e.0, proxy: 0 })?;
-        let mut state = state.borrow_mut();
-        let without = state.parent;
-        Ok(state.world.clearance(&proxy, without, number(&reach)?.clamp(0.0, 1e6)))
+        clear(&state, &proxy, &reach)
     });
     // Room around a place: the radius of the empty circle there.
     let state = shared.clone();
@@ -231,7 +231,17 @@ fn register_ornament(engine: &mut Engine, shared: &Shared) {
         Ok(placed.iter().filter(|element| element.kind == index).count() as INT)
     });
     let state = shared.clone();
-    engine.register_fn("clear_excluded", move || state.borrow_mut().world.space.readmit_all());
+    engine.register_fn("clear_excluded", move || -> Answer<()> {
+        let world = &mut state.borrow_mut().world;
+        world.clearings += 1;
+        if world.clearings > MOST_CLEARINGS {
+            return Err(wrong(format!(
+                "clear_excluded was called {MOST_CLEARINGS} times, and nothing has grown"
+            )));
+        }
+        world.space.readmit_all();
+        Ok(())
+    });
     let state = shared.clone();
     engine.register_fn("targets", move || -> Array {
         let state = state.borrow();
@@ -254,49 +264,66 @@ fn kind_index(shared: &Shared, kind: &str) -> Answer<usize> {
         .ok_or_else(|| wrong(format!("no element type is called '{kind}'")))
 }
 
+/// Room along a proxy.
+fn clear(shared: &Shared, proxy: &Proxy, reach: &Dynamic) -> Answer<f64> {
+    let reach = number(reach)?.clamp(0.0, 1e6);
+    let mut state = shared.borrow_mut();
+    let without = state.parent;
+    Ok(if proxy.is_sane() { state.world.clearance(proxy, without, reach) } else { 0.0 })
+}
+
+/// The exclude list may be cleared so often while nothing grows: once for each phase of a pattern.
+const MOST_CLEARINGS: usize = 100;
+
 /// True if a fresh element lies outside or over something placed.
-fn is_in_the_way(shared: &Shared, element: u32) -> bool {
+fn is_in_the_way(shared: &Shared, element: u32) -> Answer<bool> {
     let mut state = shared.borrow_mut();
     let world = &mut state.world;
-    let proxies = world.elements.get(element as usize).map(|e| e.proxies.clone()).unwrap_or_default();
+    let place = place_of(world, element)?;
+    let proxies = world.elements[place].proxies.clone();
+    if !proxies.iter().flatten().all(Proxy::is_sane) {
+        return Ok(true);
+    }
     let tolerance = 0.1 * world.space.cell();
     let pieces: Vec<Piece> = proxies.iter().flatten().flat_map(|proxy| proxy.pieces(tolerance)).collect();
-    !pieces.iter().all(|piece| world.is_inside(piece)) || world.overlaps(&pieces, u32::MAX, false)
+    Ok(!pieces.iter().all(|piece| world.is_inside(piece)) || world.overlaps(&pieces, u32::MAX, false))
 }
 
 fn register_making(engine: &mut Engine, shared: &Shared) {
     let state = shared.clone();
-    engine.register_fn("new_element", move |kind: ImmutableString| -> Answer<ElementRef> {
-        let index = kind_index(&state, &kind)?;
-        let mut state = state.borrow_mut();
-        if state.world.elements.len() - state.world.placed >= MOST_CHILDREN {
-            return Err(wrong(format!("the rule makes more than {MOST_CHILDREN} elements at once")));
-        }
-        let parent = state.parent;
-        Ok(ElementRef(state.world.fresh(index, parent)))
-    });
+    engine.register_fn("new_element", move |kind: ImmutableString| fresh(&state, &kind).map(|made| made.1));
     let state = shared.clone();
     engine.register_fn("new_child", move |e: ElementRef| -> Answer<()> {
-        let mut state = state.borrow_mut();
-        if (e.0 as usize) < state.world.placed {
+        let world = &mut state.borrow_mut().world;
+        let place = place_of(world, e.0)?;
+        if place < world.placed {
             return Err(wrong("a placed element cannot become a child again"));
         }
-        state.world.children.push(e.0);
+        world.children.push(place as u32);
         Ok(())
     });
     // Both at once.
     let state = shared.clone();
     engine.register_fn("add", move |kind: ImmutableString| -> Answer<ElementRef> {
-        let index = kind_index(&state, &kind)?;
-        let mut state = state.borrow_mut();
-        if state.world.elements.len() - state.world.placed >= MOST_CHILDREN {
-            return Err(wrong(format!("the rule makes more than {MOST_CHILDREN} elements at once")));
-        }
-        let parent = state.parent;
-        let element = state.world.fresh(index, parent);
-        state.world.children.push(element);
-        Ok(ElementRef(element))
+        let (place, element) = fresh(&state, &kind)?;
+        state.borrow_mut().world.children.push(place);
+        Ok(element)
     });
+}
+
+/// A new element of a type: its place, and a reference.
+fn fresh(shared: &Shared, kind: &str) -> Answer<(u32, ElementRef)> {
+    let index = kind_index(shared, kind)?;
+    let mut state = shared.borrow_mut();
+    let parent = state.parent;
+    if parent == u32::MAX {
+        return Err(wrong("elements are made by rules, not where variables are declared"));
+    }
+    if state.world.elements.len() - state.world.placed >= MOST_CHILDREN {
+        return Err(wrong(format!("the rule makes more than {MOST_CHILDREN} elements at once")));
+    }
+    let place = state.world.fresh(index, parent);
+    Ok((place, ElementRef(state.world.elements[place as usize].serial)))
 }
 
 fn register_numbers(engine: &mut Engine, shared: &Shared) {

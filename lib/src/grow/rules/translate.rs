@@ -11,8 +11,15 @@ use std::fmt::Write;
 pub(super) struct Script {
     pub text: String,
     /// Bytes of `text` and of the rule file, in order.
-    map: Vec<(usize, usize)>,
-    /// True if it was taken over as it stands.
+    map: Vec<Mapped>,
+}
+
+/// A piece of a script: where it starts, where it comes from, and whether it is taken over as it
+/// stands.
+#[derive(Clone, Copy, Debug)]
+struct Mapped {
+    mine: usize,
+    theirs: usize,
     is_verbatim: bool,
 }
 
@@ -22,8 +29,7 @@ impl Script {
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1));
         Script {
             text: text.to_owned(),
-            map: lines.map(|line| (line, at + line)).collect(),
-            is_verbatim: true,
+            map: lines.map(|line| Mapped { mine: line, theirs: at + line, is_verbatim: true }).collect(),
         }
     }
 
@@ -35,23 +41,25 @@ impl Script {
         };
         let line = &self.text[start..];
         let at = start + line.char_indices().nth(column.saturating_sub(1)).map_or(0, |(i, _)| i);
-        let known = self.map.partition_point(|&(mine, _)| mine <= at);
-        let Some(&(mine, theirs)) = known.checked_sub(1).and_then(|i| self.map.get(i)) else { return 0 };
+        let known = self.map.partition_point(|piece| piece.mine <= at);
+        let Some(&Mapped { mine, theirs, is_verbatim }) = known.checked_sub(1).and_then(|i| self.map.get(i))
+        else {
+            return 0;
+        };
         // Within a line that was taken over, on the same column.
-        if self.is_verbatim { theirs + at - mine } else { theirs }
+        if is_verbatim { theirs + at - mine } else { theirs }
     }
 
     /// Adds another script.
     pub fn append(&mut self, other: &Script) {
         let before = self.text.len();
-        self.is_verbatim = other.is_verbatim;
         self.text.push_str(&other.text);
         self.text.push('\n');
-        self.map.extend(other.map.iter().map(|&(mine, theirs)| (before + mine, theirs)));
+        self.map.extend(other.map.iter().map(|piece| Mapped { mine: before + piece.mine, ..*piece }));
     }
 
     fn put(&mut self, text: &str, from: usize) {
-        self.map.push((self.text.len(), from));
+        self.map.push(Mapped { mine: self.text.len(), theirs: from, is_verbatim: false });
         self.text.push_str(text);
         self.text.push(' ');
     }
@@ -399,7 +407,9 @@ impl<'t> Translator<'_, 't> {
             let places = self.out.map.split_off(kept);
             let before = "(if ";
             self.out.text.push_str(before);
-            self.out.map.extend(places.into_iter().map(|(mine, theirs)| (mine + before.len(), theirs)));
+            self.out
+                .map
+                .extend(places.into_iter().map(|piece| Mapped { mine: piece.mine + before.len(), ..piece }));
             self.out.text.push_str(&test);
             self.put("{");
             self.expression()?;
@@ -508,6 +518,13 @@ impl<'t> Translator<'_, 't> {
         if let Some(sign) = counts.filter(|_| is_plain && is_inside) {
             self.next += 1;
             let place = self.out.text.split_off(start);
+            if place.contains("{ let before") {
+                return Err(self.source.error(
+                    sign.at,
+                    "counting inside of what is counted",
+                    "Count before, in a statement of its own",
+                ));
+            }
             self.out.map.truncate(kept);
             let by = if sign.is("++") { "+=" } else { "-=" };
             let mut text = String::new();

@@ -4,8 +4,12 @@
 use super::engine::{Answer, Shared, wrong};
 use crate::grow::piece::{Kind, MOST_CORNERS, Proxy};
 use crate::grow::space::Circle;
+use crate::grow::world::World;
 use kurbo::{CubicBez, Point, Vec2};
 use rhai::{Array, Dynamic, Engine, FLOAT, INT, ImmutableString};
+
+/// Corners of all polygons that one application of a rule sets, at most.
+const MOST_CORNERS_AT_ONCE: usize = 5000;
 
 /// A step from one point to another: a direction with a length. It knows where it starts, so that it
 /// can be taken for the point that it leads to.
@@ -36,7 +40,7 @@ impl Direction {
     }
 }
 
-/// An element by its number.
+/// An element by its serial number, which stays what it is whatever becomes of the element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ElementRef(pub u32);
 
@@ -45,6 +49,11 @@ pub(super) struct ElementRef(pub u32);
 pub(super) struct ProxyRef {
     pub element: u32,
     pub proxy: usize,
+}
+
+/// Where an element is.
+pub(super) fn place_of(world: &World, serial: u32) -> Answer<usize> {
+    world.find(serial).ok_or_else(|| wrong("the element is no more: its rule failed, or did not add it"))
 }
 
 /// A number, whole or not.
@@ -99,31 +108,41 @@ pub(super) fn direction(value: &Dynamic) -> Answer<Direction> {
 /// A proxy in its place.
 pub(super) fn get(shared: &Shared, at: ProxyRef) -> Answer<Proxy> {
     let state = shared.borrow();
-    let element = state.world.elements.get(at.element as usize);
-    match element.and_then(|element| element.proxies.get(at.proxy)) {
+    let element = &state.world.elements[place_of(&state.world, at.element)?];
+    match element.proxies.get(at.proxy) {
         Some(Some(proxy)) => Ok(proxy.clone()),
         Some(None) => Err(wrong("this proxy has not been set yet")),
-        None => Err(wrong(format!("the element has no proxy number {}", at.proxy))),
+        None => Err(no_proxy(at.proxy)),
+    }
+}
+
+fn no_proxy(number: usize) -> Box<rhai::EvalAltResult> {
+    match number {
+        usize::MAX => wrong("proxies are counted from 0"),
+        number => wrong(format!("the element has no proxy number {number}")),
     }
 }
 
 fn kind_of(shared: &Shared, at: ProxyRef) -> Answer<Kind> {
     let state = shared.borrow();
-    let kind = state.world.elements.get(at.element as usize).map(|element| element.kind);
-    let proxies = kind.map(|kind| &state.world.kinds[kind].proxies);
-    proxies
-        .and_then(|proxies| proxies.get(at.proxy).copied())
-        .ok_or_else(|| wrong(format!("the element has no proxy number {}", at.proxy)))
+    let kind = state.world.elements[place_of(&state.world, at.element)?].kind;
+    state.world.kinds[kind].proxies.get(at.proxy).copied().ok_or_else(|| no_proxy(at.proxy))
 }
 
 fn put(shared: &Shared, at: ProxyRef, proxy: Proxy) -> Answer<()> {
     let mut state = shared.borrow_mut();
-    if (at.element as usize) < state.world.placed {
+    let world = &mut state.world;
+    let place = place_of(world, at.element)?;
+    if place < world.placed {
         return Err(wrong("a placed element stays as it is: set the new ones"));
     }
-    if let Some(element) = state.world.elements.get_mut(at.element as usize) {
-        element.proxies[at.proxy] = Some(proxy);
+    if let Proxy::Polygon(corners) = &proxy {
+        world.corners += corners.len();
+        if world.corners > MOST_CORNERS_AT_ONCE {
+            return Err(wrong(format!("the rule sets more than {MOST_CORNERS_AT_ONCE} corners at once")));
+        }
     }
+    world.elements[place].proxies[at.proxy] = Some(proxy);
     Ok(())
 }
 
@@ -208,9 +227,8 @@ fn proxy_field(shared: &Shared, at: ProxyRef, name: &str) -> Answer<Dynamic> {
 fn element_field(shared: &Shared, element: ElementRef, name: &str) -> Answer<Dynamic> {
     {
         let state = shared.borrow();
-        let Some(of) = state.world.elements.get(element.0 as usize) else {
-            return Err(wrong("the element is no more"));
-        };
+        let place = place_of(&state.world, element.0)?;
+        let of = &state.world.elements[place];
         let kind = &state.world.kinds[of.kind];
         if let Some(i) = kind.fields.iter().position(|(field, _)| field == name) {
             return Ok(of.fields[i].clone());
@@ -219,10 +237,12 @@ fn element_field(shared: &Shared, element: ElementRef, name: &str) -> Answer<Dyn
             "sterile" => return Ok(of.sterile.into()),
             "children" => return Ok((of.children.len() as INT).into()),
             "generation" => return Ok(INT::from(of.generation).into()),
-            "number" => return Ok(INT::from(element.0).into()),
+            "number" => return Ok((place as INT).into()),
             "type" => return Ok(kind.name.clone().into()),
-            "parent" if of.parent != u32::MAX => return Ok(Dynamic::from(ElementRef(of.parent))),
-            "parent" => return Ok(Dynamic::UNIT),
+            "parent" => {
+                let parent = state.world.elements.get(of.parent as usize);
+                return Ok(parent.map_or(Dynamic::UNIT, |parent| Dynamic::from(ElementRef(parent.serial))));
+            }
             _ => {}
         }
     }
@@ -232,11 +252,13 @@ fn element_field(shared: &Shared, element: ElementRef, name: &str) -> Answer<Dyn
 fn set_element_field(shared: &Shared, element: ElementRef, name: &str, value: Dynamic) -> Answer<()> {
     let mut state = shared.borrow_mut();
     let world = &mut state.world;
-    let Some(of) = world.elements.get_mut(element.0 as usize) else {
-        return Err(wrong("the element is no more"));
-    };
+    let place = place_of(world, element.0)?;
+    let of = &mut world.elements[place];
     let kind = &world.kinds[of.kind];
     if let Some(i) = kind.fields.iter().position(|(field, _)| field == name) {
+        if !(value.is_int() || value.is_float() || value.is_bool()) {
+            return Err(wrong(format!("a field holds a number, true or false, not {}", value.type_name())));
+        }
         of.fields[i] = value;
         return Ok(());
     }
