@@ -508,31 +508,50 @@ mod rules {
         }
     }
 
+    fn native(body: &str) -> String {
+        format!("element seed: point\nelement dot: circle\n\nrule seed -> dot d {{\n    {body}\n}}\n")
+    }
+
     #[test]
-    fn errors_say_where() {
-        let native = |body: &str| {
-            format!("element seed: point\nelement dot: circle\n\nrule seed -> dot d {{\n    {body}\n}}\n")
-        };
-        let printed = |body: &str| {
-            format!(
-                "%element\nseed point\n%endelement\n%element\ndot circle\n%endelement\n%rule\nseed --> dot\n{{\n    {body}\n}}\n%endrule\n"
-            )
-        };
+    fn errors_in_a_body_say_where() {
         insta::assert_snapshot!(refusal(&native("d.set(parent, goal.radious);")), @"The rules 'own', 5:24: a Circle has no 'radious'. See docs/rules.md for the fields that there are. [bad-rules]");
         insta::assert_snapshot!(refusal(&native("let x = ;")), @"The rules 'own', 5:13: the rule cannot be read: unexpected ';'. Correct it there. [bad-rules]");
         insta::assert_snapshot!(refusal(&native("d.set(parent);")), @"The rules 'own', 5:7: a circle is set to a centre and a radius, not to 1 values. Change the rule there. [bad-rules]");
         insta::assert_snapshot!(refusal(&native("d.radius = 4;")), @"The rules 'own', 5:6: the element type 'dot' has no field 'radius' that can be set. Change the rule there. [bad-rules]");
+        insta::assert_snapshot!(refusal(&native("d.set(parent, 3); 1.0")), @"The rules 'own', 4:6: the rule ends with a value that says neither yes nor no: f64. End it with SUCCESS, with FAILURE, or with a statement and a semicolon. [bad-rules]");
+        insta::assert_snapshot!(refusal(&native("let a = []; a.pad(1000, 1); d.f = a;")), @"The rules 'own', 5:34: the element type 'dot' has no field 'f' that can be set. Change the rule there. [bad-rules]");
+        insta::assert_snapshot!(refusal(&native("d.proxy(-1).set(parent, 3);")), @"The rules 'own', 5:17: proxies are counted from 0. Change the rule there. [bad-rules]");
+    }
+
+    #[test]
+    fn rules_are_fenced_in() {
         insta::assert_snapshot!(refusal(&native("loop {}")), @"The rules 'own', 5:10: the rule takes more than 100000 steps. Let its loops end sooner. [bad-rules]");
         insta::assert_snapshot!(refusal(&native("let a = []; loop { a.push(a.len()); }")), @"The rules 'own', 5:26: a text, array or map has more than 2000 entries. Keep less in it. [bad-rules]");
         insta::assert_snapshot!(refusal(&native("loop { add(\"dot\"); }")), @"The rules 'own', 5:12: the rule makes more than 2000 elements at once. Change the rule there. [bad-rules]");
         insta::assert_snapshot!(refusal(&native("eval(\"1\");")), @"The rules 'own', 5:5: the rule cannot be read: reserved keyword 'eval' is disabled. Correct it there. [bad-rules]");
         insta::assert_snapshot!(refusal(&native("timestamp();")), @"The rules 'own', 5:5: there is no function timestamp(). See docs/rules.md for what rules can call, and with which values. [bad-rules]");
         insta::assert_snapshot!(refusal(&native("open(\"/etc/passwd\");")), @"The rules 'own', 5:5: there is no function open (&str | ImmutableString | String). See docs/rules.md for what rules can call, and with which values. [bad-rules]");
+        insta::assert_snapshot!(refusal(&native("sleep(1000);")), @"The rules 'own', 5:5: there is no function sleep (i64). See docs/rules.md for what rules can call, and with which values. [bad-rules]");
+        insta::assert_snapshot!(refusal(&native("clear_excluded(); return FAILURE;")), @"The rules 'own', 5:5: clear_excluded was called 100 times, and nothing has grown. Change the rule there. [bad-rules]");
+    }
+
+    #[test]
+    fn errors_in_the_printed_spelling_say_where() {
+        let printed = |body: &str| {
+            format!(
+                "%element\nseed point\n%endelement\n%element\ndot circle\n%endelement\n%rule\nseed --> dot\n{{\n    {body}\n}}\n%endrule\n"
+            )
+        };
         insta::assert_snapshot!(refusal(&printed("$0.set($, ) ;")), @"The rules 'own', 10:8: a circle is set to a centre and a radius, not to 1 values. Change the rule there. [bad-rules]");
         insta::assert_snapshot!(refusal(&printed("$3.set($, 1.0);")), @"The rules 'own', 10:6: the rule has no child number 3. Children are counted from 0, in the order of the rule's first line. [bad-rules]");
         insta::assert_snapshot!(refusal(&printed("$0.set($, 1.0)")), @"The rules 'own', 10:19: ';' is missing before the end. Add it. [bad-rules]");
         insta::assert_snapshot!(refusal(&printed("$0.set($, $goal.width);")), @"The rules 'own', 10:21: a Circle has no 'width'. See docs/rules.md for the fields that there are. [bad-rules]");
         insta::assert_snapshot!(refusal(&printed("flower *x = new flower;")), @"The rules 'own', 10:15: ';' is missing before '='. Add it. [bad-rules]");
+        insta::assert_snapshot!(refusal(&printed("int a; a = a[a++]++;")), @"The rules 'own', 10:22: counting inside of what is counted. Count before, in a statement of its own. [bad-rules]");
+    }
+
+    #[test]
+    fn errors_of_a_file_say_where() {
         insta::assert_snapshot!(refusal("element seed: circle\n"), @"The rules 'own', 1:1: there is no element type 'seed' with a single point. Declare it: growth starts there (element seed: point). [bad-rules]");
         insta::assert_snapshot!(refusal("element seed: point\nrule sead -> {}"), @"The rules 'own', 2:6: no element type is called 'sead'. Declare it, or use one of seed. [bad-rules]");
         insta::assert_snapshot!(refusal("element seed: point\n"), @"The rules 'own', 2:1: there is no rule. Add one. [bad-rules]");
@@ -540,17 +559,11 @@ mod rules {
         insta::assert_snapshot!(refusal("element seed: point\nelement seed: point"), @"The rules 'own', 2:9: the element type 'seed' is declared twice. Give one of them another name. [bad-rules]");
         insta::assert_snapshot!(refusal("element seed: point\nrule seed -> {}\nlook seed: art nothing"), @"The rules 'own', 3:6: no artwork is called 'nothing'. Use stem, vine, brush, ribbon, rope, leafy, beads, acanthus, leaf, willow, drop, hook, petal, quote, dot, ring, rosette, daisy, peony, lotus, bud, star, outline, fill or none; what you draw for a type needs no art. [bad-rules]");
         insta::assert_snapshot!(refusal("element seed: point\nrule seed -> {}\nlook seed: colour red"), @"The rules 'own', 3:12: a look has no 'colour'. Use art, width, size, tone, by, thick or join. [bad-rules]");
-        insta::assert_snapshot!(refusal(&native("sleep(1000);")), @"The rules 'own', 5:5: there is no function sleep (i64). See docs/rules.md for what rules can call, and with which values. [bad-rules]");
-        insta::assert_snapshot!(refusal(&native("clear_excluded(); return FAILURE;")), @"The rules 'own', 5:5: clear_excluded was called 100 times, and nothing has grown. Change the rule there. [bad-rules]");
-        insta::assert_snapshot!(refusal(&native("d.set(parent, 3); 1.0")), @"The rules 'own', 4:6: the rule ends with a value that says neither yes nor no: f64. End it with SUCCESS, with FAILURE, or with a statement and a semicolon. [bad-rules]");
-        insta::assert_snapshot!(refusal(&native("let a = []; a.pad(1000, 1); d.f = a;")), @"The rules 'own', 5:34: the element type 'dot' has no field 'f' that can be set. Change the rule there. [bad-rules]");
-        insta::assert_snapshot!(refusal(&native("d.proxy(-1).set(parent, 3);")), @"The rules 'own', 5:17: proxies are counted from 0. Change the rule there. [bad-rules]");
         insta::assert_snapshot!(refusal("element seed: point\nlet k = add(\"seed\");\nrule seed -> {}"), @"The rules 'own', 2:9: elements are made by rules, not where variables are declared. Change the rule there. [bad-rules]");
         insta::assert_snapshot!(refusal("element seed: point, n = 1, n = 2\nrule seed -> {}"), @"The rules 'own', 1:29: the field 'n' is declared twice. Give one of them another name. [bad-rules]");
         insta::assert_snapshot!(refusal("element seed: point\nrule seed -> {}\nlook seed: thick wide"), @"The rules 'own', 3:6: the element type 'seed' has no field 'wide'. Declare it, or leave it out of the look. [bad-rules]");
         insta::assert_snapshot!(refusal("element seed: point\nrule seed -> {}\nlook seed: art dot tone 3"), @"The rules 'own', 3:20: a comma is missing before 'tone'. Add it. [bad-rules]");
         insta::assert_snapshot!(refusal("%element\nseed point\nint element\nint order;\n%endelement\nelement dot: circle\nrule seed -> dot d { oops(); }"), @"The rules 'own', 7:22: there is no function oops(). See docs/rules.md for what rules can call, and with which values. [bad-rules]");
-        insta::assert_snapshot!(refusal(&printed("int a; a = a[a++]++;")), @"The rules 'own', 10:22: counting inside of what is counted. Count before, in a statement of its own. [bad-rules]");
         insta::assert_snapshot!(refusal("grow!"), @"The rules 'own', 1:1: 'grow' means nothing here. Write an element, a rule, a look, smallest, reach, let or fn. [bad-rules]");
     }
 
