@@ -578,6 +578,11 @@ fn cell_number(x: usize, y: usize, block_columns: usize) -> usize {
 pub(super) struct Room {
     pub fine: Space,
     coarse: Space,
+    /// True once no place has room for a large circle, whatever stops it: none can come any more, and
+    /// coarse cells need not be kept up.
+    is_small: bool,
+    /// How often there was no large circle to be chosen.
+    without: usize,
 }
 
 impl Room {
@@ -612,7 +617,13 @@ impl Room {
             }
             Space::new(bounds, cell, &inside)
         };
-        Room { fine: space(cell, (Self::NEAR * cell) as f32), coarse: space(Self::COARSE * cell, f32::MAX) }
+        let (is_small, without) = (false, 0);
+        Room {
+            is_small,
+            without,
+            fine: space(cell, (Self::NEAR * cell) as f32),
+            coarse: space(Self::COARSE * cell, f32::MAX),
+        }
     }
 
     /// Side of a fine cell.
@@ -630,25 +641,43 @@ impl Room {
     /// As [`Space::add`].
     pub fn add(&mut self, piece: &Piece, element: u32, only: bool) {
         self.fine.add(piece, element, only);
-        self.coarse.add(piece, element, only);
+        if !self.is_small {
+            self.coarse.add(piece, element, only);
+        }
     }
 
     /// As [`Space::largest`].
     pub fn largest(&mut self, smallest: f64) -> Option<Circle> {
-        let large = self.coarse.largest(smallest.max(Self::LARGE * self.fine.cell));
-        large.or_else(|| self.fine.largest(smallest))
+        if !self.is_small {
+            let large = self.coarse.largest(smallest.max(Self::LARGE * self.fine.cell));
+            if large.is_some() {
+                return large;
+            }
+            // To look at all cells takes long: not every time.
+            const LOOK_EVERY: usize = 64;
+            if self.without.is_multiple_of(LOOK_EVERY) {
+                let most = (Self::LARGE * self.fine.cell) as f32;
+                self.is_small = self.coarse.near.iter().all(|near| near.distance <= most);
+            }
+            self.without += 1;
+        }
+        self.fine.largest(smallest)
     }
 
     /// As [`Space::exclude`].
     pub fn exclude(&mut self, at: Point) {
         self.fine.exclude(at);
-        self.coarse.exclude(at);
+        if !self.is_small {
+            self.coarse.exclude(at);
+        }
     }
 
     /// As [`Space::readmit`].
     pub fn readmit(&mut self, at: Point, radius: f64) {
         self.fine.readmit(at, radius);
-        self.coarse.readmit(at, radius);
+        if !self.is_small {
+            self.coarse.readmit(at, radius);
+        }
     }
 
     /// As [`Space::readmit_all`].
