@@ -269,19 +269,6 @@ impl Space {
     /// not less.
     fn wave(&mut self, piece: &Piece, (element, own): (u32, u32), distance: impl Fn(f32, f32, f32) -> f32) {
         let mut queue = std::mem::take(&mut self.queue);
-        let cell = self.cell as f32;
-        let lower = |space: &mut Self, (x, y, number): (usize, usize, usize), queue: &mut Vec<Visit>| {
-            let near = space.near[number];
-            if near.by == own {
-                return;
-            }
-            let distance = distance((x as f32 + 0.5) * cell, (y as f32 + 0.5) * cell, near.distance);
-            if distance < near.distance && near.by != OUTSIDE {
-                space.near[number] = Near { distance, by: element };
-                space.touch(number);
-                queue.push((x as u32, y as u32, number as u32));
-            }
-        };
         // A line passes between the middles of cells; a disc holds those along its rim.
         const AROUND: [(f64, f64); 5] = [(0.0, 0.0), (-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)];
         let (step, around) = match piece {
@@ -291,7 +278,7 @@ impl Space {
         piece.along(step, |p| {
             for &(dx, dy) in around {
                 if let Some((x, y)) = self.place(p + Vec2::new(dx, dy) * self.cell) {
-                    lower(self, (x, y, self.number(x, y)), &mut queue);
+                    self.lower((x, y, self.number(x, y)), (element, own), &distance, &mut queue);
                 }
             }
         });
@@ -304,23 +291,45 @@ impl Space {
             let (x, y, number) = (x as usize, y as usize, number as usize);
             if x > 0 {
                 let by = if x % BLOCK == 0 { across } else { 1 };
-                lower(self, (x - 1, y, number - by), &mut queue);
+                self.lower((x - 1, y, number - by), (element, own), &distance, &mut queue);
             }
             if x + 1 < self.columns {
                 let by = if x % BLOCK == last { across } else { 1 };
-                lower(self, (x + 1, y, number + by), &mut queue);
+                self.lower((x + 1, y, number + by), (element, own), &distance, &mut queue);
             }
             if y > 0 {
                 let by = if y % BLOCK == 0 { row } else { BLOCK };
-                lower(self, (x, y - 1, number - by), &mut queue);
+                self.lower((x, y - 1, number - by), (element, own), &distance, &mut queue);
             }
             if y + 1 < self.rows {
                 let by = if y % BLOCK == last { row } else { BLOCK };
-                lower(self, (x, y + 1, number + by), &mut queue);
+                self.lower((x, y + 1, number + by), (element, own), &distance, &mut queue);
             }
         }
         queue.clear();
         self.queue = queue;
+    }
+
+    /// Gives a cell to an element if that is nearer than what is known.
+    #[inline(always)]
+    fn lower(
+        &mut self,
+        (x, y, number): (usize, usize, usize),
+        (element, own): (u32, u32),
+        distance: &impl Fn(f32, f32, f32) -> f32,
+        queue: &mut Vec<Visit>,
+    ) {
+        let near = self.near[number];
+        if near.by == own {
+            return;
+        }
+        let cell = self.cell as f32;
+        let distance = distance((x as f32 + 0.5) * cell, (y as f32 + 0.5) * cell, near.distance);
+        if distance < near.distance && near.by != OUTSIDE {
+            self.near[number] = Near { distance, by: element };
+            self.touch(number);
+            queue.push((x as u32, y as u32, number as u32));
+        }
     }
 
     fn refresh(&mut self) {
