@@ -332,6 +332,15 @@ fn what_the_artist_draws_is_used() {
         (0..=4).all(|k| along.eval(f64::from(k) / 4.0).distance(grown_along.eval(f64::from(k) / 4.0)) < 1e-6)
     );
 
+    // One that runs over the edge is kept as far as it is inside, and seeds beside it count.
+    let stem = "<path class='rinceau-stem' d='M200,420C200,300 200,200 200,100' fill='none'/><circle class='rinceau-seed' cx='60' cy='60' r='2'/>";
+    let (_, scene) = read(svg(&format!("{PANEL}{stem}")));
+    let drawn = proxies(&grown(&scene, &[("rules", "spiral")], 1).unwrap());
+    let is_upright = |path: &BezPath| path.bounding_box().width() < 0.1 && path.bounding_box().height() > 5.0;
+    assert!(drawn.iter().filter(|(_, path)| is_upright(path)).count() > 8, "the part inside");
+    let near_seed = |path: &BezPath| path.bounding_box().inflate(0.1, 0.1).contains(Point::new(60.0, 60.0));
+    assert!(drawn.iter().any(|(_, path)| near_seed(path)));
+
     let tulip = "<g id='tulip' class='rinceau-element' rinceau:symbol='flower'><path d='M0,0C9,-9 20,-9 30,0C20,9 9,9 0,0Z' fill='#123456'/><path class='rinceau-spine' d='M0,0H30'/></g>";
     let (_, scene) = read(svg(&format!("{PANEL}{tulip}")));
     let artwork = grown(&scene, &[("rules", "flower")], 1).unwrap();

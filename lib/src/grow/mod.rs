@@ -35,7 +35,7 @@ use crate::rng::Rng;
 use crate::shapes::Shapes;
 use draw::{Arts, Drawing};
 use growth::{Grown, Settings};
-use kurbo::{Affine, CubicBez, PathSeg, Point, Rect, Shape, Vec2};
+use kurbo::{Affine, CubicBez, ParamCurve, PathSeg, Point, Rect, Shape, Vec2};
 use piece::{Kind, Proxy};
 use rinceau_format::{Artwork, Error, Scene};
 use rules::{Applied, Rules, State};
@@ -217,10 +217,11 @@ impl One<'_> {
         let mut world = World::new(rules.kinds(), space, region, bounds);
         world.set_images(images);
         world.most = params.max_elements;
-        let seeds = self.seeds(&world, unit);
         let stems = self.stems(unit);
+        let stem_kind = stem_kind(&world).filter(|_| !stems.is_empty());
+        let seeds = self.seeds(&world, unit, stem_kind.is_none());
         let shared = rules.start(State::new(world, rng.fork(), self.targets(unit)))?;
-        let placed = plant(&rules, &shared, &seeds, &stems);
+        let placed = plant(&rules, &shared, &seeds, stem_kind.map(|kind| (kind, &stems[..])));
         let (mut sprouted, mut is_late) = (0, false);
         for seed in 0..placed {
             match growth::sprout(&mut rules, &shared, seed as u32, progress)? {
@@ -283,12 +284,13 @@ impl One<'_> {
         }
     }
 
-    /// Where growth starts, in units of the rules: marked seeds, or as the artist wishes.
-    fn seeds(&self, world: &World, unit: f64) -> Vec<Point> {
+    /// Where growth starts, in units of the rules: marked seeds, or as the artist wishes if nothing else
+    /// is there to grow from.
+    fn seeds(&self, world: &World, unit: f64, by_itself: bool) -> Vec<Point> {
         let seeds = self.scene.seeds.iter().map(|seed| (seed.at.to_vec2() / unit).to_point());
         let is_inside = |p: &Point| world.space.distance(*p).is_some_and(|distance| distance > 0.0);
         let marked: Vec<Point> = seeds.filter(is_inside).take(MOST_SEEDS).collect();
-        if !marked.is_empty() {
+        if !marked.is_empty() || !by_itself {
             return marked;
         }
         // Away from its own images, and from the boundary.
@@ -336,30 +338,47 @@ impl One<'_> {
     }
 }
 
-/// Places seeds, and drawn stems as elements of the type that stems have; returns how many seeds.
-fn plant(rules: &Rules, shared: &Rc<RefCell<State>>, seeds: &[Point], stems: &[Vec<CubicBez>]) -> usize {
-    let mut state = shared.borrow_mut();
-    let world = state.world();
+/// The type of element that drawn stems are: one called so, or the first that is a curve.
+fn stem_kind(world: &World) -> Option<usize> {
     let is_stem = |kind: &&world::ElementKind| kind.proxies.first() == Some(&Kind::Bezier);
     let named = world.kinds.iter().position(|kind| kind.name == "stem" && is_stem(&kind));
-    let stem_kind = named.or_else(|| world.kinds.iter().position(|kind| is_stem(&kind)));
+    named.or_else(|| world.kinds.iter().position(|kind| is_stem(&kind)))
+}
+
+/// Places seeds, and what of drawn stems lies inside; returns how many seeds.
+fn plant(
+    rules: &Rules,
+    shared: &Rc<RefCell<State>>,
+    seeds: &[Point],
+    stems: Option<(usize, &[Vec<CubicBez>])>,
+) -> usize {
+    /// Pieces of a curve that crosses the outline.
+    const PARTS: u32 = 16;
+    let mut state = shared.borrow_mut();
+    let world = state.world();
     let mut placed = 0;
-    let is_planned = stem_kind.is_some() && !stems.is_empty();
-    if !is_planned || !seeds.is_empty() {
-        for &seed in seeds.iter().filter(|_| !is_planned || stems.is_empty()) {
-            let element = world.fresh(rules.seed(), world::NONE);
-            world.elements[element as usize].proxies[0] = Some(Proxy::Point(seed));
-            placed += usize::from(world.commit(world::NONE, 1));
+    for &seed in seeds {
+        let element = world.fresh(rules.seed(), world::NONE);
+        world.elements[element as usize].proxies[0] = Some(Proxy::Point(seed));
+        placed += usize::from(world.commit(world::NONE, 1));
+    }
+    let Some((kind, stems)) = stems else { return placed };
+    for &curve in stems.iter().flatten() {
+        let parts = (0..PARTS).map(|i| {
+            let at = |i: u32| f64::from(i) / f64::from(PARTS);
+            curve.subsegment(at(i)..at(i + 1))
+        });
+        let is_inside = |world: &World, curve| world.has_inside(&Proxy::Bezier(curve));
+        let curves = if is_inside(world, curve) { vec![curve] } else { parts.collect() };
+        for curve in curves {
+            if is_inside(world, curve) {
+                let element = world.fresh(kind, world::NONE);
+                world.elements[element as usize].proxies[0] = Some(Proxy::Bezier(curve));
+                world.children.push(element);
+            }
         }
     }
-    if let Some(kind) = stem_kind {
-        for &curve in stems.iter().flatten() {
-            let element = world.fresh(kind, world::NONE);
-            world.elements[element as usize].proxies[0] = Some(Proxy::Bezier(curve));
-            world.children.push(element);
-        }
-        world.commit(world::NONE, 0);
-    }
+    world.commit(world::NONE, 0);
     placed
 }
 

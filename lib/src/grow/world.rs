@@ -274,6 +274,11 @@ impl World {
             }
     }
 
+    /// True if all of a proxy lies in the region.
+    pub fn has_inside(&self, proxy: &Proxy) -> bool {
+        proxy.is_sane() && proxy.pieces(self.tolerance).iter().all(|piece| self.is_inside(piece))
+    }
+
     /// Distance to the boundary, negative outside, or to where the images of a place would meet it.
     pub fn wall_distance(&self, p: Point) -> f64 {
         let reach = self.bounds.size().max_side();
