@@ -1,5 +1,6 @@
 //! Artwork to a result layer.
 
+mod page;
 mod stream;
 
 use crate::artwork::{Artwork, Group, Item, Part, Symbol, SymbolItem};

@@ -116,6 +116,9 @@ impl Expansion {
     pub fn look(&self, drawn: &Drawn, looks: &mut Looks) -> Look {
         let primitive = &self.lists.primitives[drawn.primitive];
         let full = drawn.pose * primitive.base;
+        if primitive.is_plain {
+            return Look { style: looks.style(self, drawn, 1.0), width: 1.0, transform: full, is_flat: true };
+        }
         let [a, b, c, d, ..] = full.as_coeffs();
         let size = full.determinant().abs().sqrt();
         let is_similar =

@@ -25,6 +25,8 @@ pub(super) struct Primitive {
     /// From the path's coordinates to user units of the root.
     pub base: Affine,
     pub style: Style,
+    /// What its copies are drawn with depends on nothing but the colours: no stroke, no gradient.
+    pub is_plain: bool,
     pub when: When,
     pub live: Option<Live>,
     /// Points that bound it, in user units of the root.
@@ -69,7 +71,18 @@ impl Lists {
                     let hull = hull(&path, base);
                     let (style, when, live) = (drawn.part.style.clone(), drawn.when, drawn.live.clone());
                     let reversed = path.reverse_subpaths();
-                    primitives.push(Primitive { of, path, reversed, base, style, when, live, hull });
+                    let is_plain = style.stroke_width().is_none() && !style.has_paint_server();
+                    primitives.push(Primitive {
+                        of,
+                        path,
+                        reversed,
+                        base,
+                        style,
+                        is_plain,
+                        when,
+                        live,
+                        hull,
+                    });
                     Entry::Draw(primitives.len() - 1)
                 }
             };
