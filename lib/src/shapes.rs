@@ -94,9 +94,15 @@ impl Shapes {
         self.free_in(&band, gap, edge)
     }
 
+    /// The box around a container.
+    pub fn frame(&self, container: usize) -> Rect {
+        bounding_box(&self.containers[container]).unwrap_or(Rect::ZERO)
+    }
+
     /// Left end and width of a container.
     pub fn span(&self, container: usize) -> (f64, f64) {
-        bounding_box(&self.containers[container]).map_or((0.0, 0.0), |bounds| (bounds.x0, bounds.width()))
+        let frame = self.frame(container);
+        (frame.x0, frame.width())
     }
 
     fn free_in(&self, shape: &[Contour], gap: f64, edge: f64) -> Option<Region> {

@@ -1,14 +1,12 @@
 //! The main loop (000 4.1, checklist W-061, W-066, W-090 to W-105): find the largest empty circle,
 //! let the elements near it try their rules, go on.
 
-use super::rules::{Applied, Rules, State};
+use super::rules::{Applied, Rules, Shared};
 use super::space::Circle;
 use super::world::Candidate;
 use crate::progress::Progress;
 use kurbo::Point;
 use rinceau_format::Error;
-use std::cell::RefCell;
-use std::rc::Rc;
 
 /// Elements that may try to grow into one circle, at most.
 const MOST_CANDIDATES: usize = 24;
@@ -51,6 +49,8 @@ pub(super) struct Grown {
     pub view: Option<View>,
     /// Why children were not placed: unset or without sense, outside, over others.
     pub refused: [usize; 3],
+    /// What the artist should know of the symmetry.
+    pub note: Option<String>,
 }
 
 impl Grown {
@@ -70,7 +70,7 @@ impl Grown {
 /// Errors: those of the rules.
 pub(super) fn grow(
     rules: &mut Rules,
-    shared: &Rc<RefCell<State>>,
+    shared: &Shared,
     settings: &Settings,
     progress: &mut dyn Progress,
 ) -> Result<Grown, Error> {
@@ -134,28 +134,38 @@ pub(super) fn grow(
 }
 
 /// How much of the work is done, about: circles shrink to the smallest.
-fn share(shared: &Rc<RefCell<State>>) -> f64 {
+fn share(shared: &Shared) -> f64 {
     let mut state = shared.borrow_mut();
     let world = state.world();
     let placed = world.placed as f64;
     placed / (placed + 500.0)
 }
 
-/// Lets a seed grow at once, whatever room there is.
+/// Lets the first elements, which are seeds, grow at once, whatever room there is: how many did, and
+/// whether there was time for all.
 ///
 /// Errors: those of the rules.
 pub(super) fn sprout(
     rules: &mut Rules,
-    shared: &Rc<RefCell<State>>,
-    seed: u32,
+    shared: &Shared,
+    seeds: usize,
     progress: &mut dyn Progress,
-) -> Result<Applied, Error> {
-    let goal = {
-        let mut state = shared.borrow_mut();
-        let world = state.world();
-        let at =
-            world.elements[seed as usize].proxies[0].as_ref().map_or(Point::ORIGIN, |proxy| proxy.start());
-        Circle { center: at, radius: world.wall_distance(at).max(0.0) }
-    };
-    rules.grow(&Candidate { element: seed, goal }, || progress.step("grow", 0.0))
+) -> Result<(usize, bool), Error> {
+    let mut sprouted = 0;
+    for seed in 0..seeds {
+        let goal = {
+            let mut state = shared.borrow_mut();
+            let world = state.world();
+            let place = world.elements[seed].proxies[0].as_ref();
+            let center = place.map_or(Point::ORIGIN, |proxy| proxy.start());
+            Circle { center, radius: world.wall_distance(center).max(0.0) }
+        };
+        let candidate = Candidate { element: seed as u32, goal };
+        match rules.grow(&candidate, || progress.step("grow", 0.0))? {
+            Applied::Placed => sprouted += 1,
+            Applied::Failed => {}
+            Applied::Late => return Ok((sprouted, false)),
+        }
+    }
+    Ok((sprouted, true))
 }

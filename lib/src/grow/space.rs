@@ -9,11 +9,10 @@
 //! distances around it outwards while they drop, and a pyramid of maxima over blocks of cells finds
 //! the largest circle at once.
 
+mod exclude;
+
 use super::piece::Piece;
-use crate::geom::distance::covered;
-use crate::geom::near::point_segment;
-use crate::geom::region::Region;
-use kurbo::{Affine, Point, Rect, Vec2};
+use kurbo::{Point, Rect, Vec2};
 
 /// The nearest thing is the boundary.
 pub(super) const BOUNDARY: u32 = u32::MAX;
@@ -59,7 +58,8 @@ struct Level {
 #[derive(Clone, Debug)]
 pub(super) struct Space {
     origin: Point,
-    cell: f64,
+    /// Side of a cell.
+    pub cell: f64,
     columns: usize,
     rows: usize,
     /// From the middle of each cell to what is nearest. Cells of a block lie together, so that a wave
@@ -377,6 +377,11 @@ impl Space {
         }
     }
 
+    /// True if no cell is farther from what is nearest.
+    pub fn is_within(&self, most: f64) -> bool {
+        self.near.iter().all(|near| f64::from(near.distance) <= most)
+    }
+
     /// The largest empty circle that an element stops and no excluded point lies in; of equal ones
     /// the first, row by row. `None` if none is larger than `smallest`.
     pub fn largest(&mut self, smallest: f64) -> Option<Circle> {
@@ -460,322 +465,10 @@ impl Space {
         let circles = (0..self.near.len()).filter(is_peak).map(circle).collect();
         (circles, self.excluded.iter().flatten().copied().collect())
     }
-
-    /// Puts the middle of a cell on the exclude list. The cells whose circles it lies in hang
-    /// together, because distances change no faster than places.
-    pub fn exclude(&mut self, at: Point) {
-        let Some((x, y)) = self.place(at) else { return };
-        let number = self.excluded.len() as u32;
-        self.excluded.push(Some(at));
-        self.excluded_in[y / BLOCK * self.levels[0].columns + x / BLOCK].push(number);
-        let mut queue = vec![(x, y)];
-        let mut next = 0;
-        while let Some(&(x, y)) = queue.get(next) {
-            next += 1;
-            let index = self.number(x, y);
-            let distance = at.distance(self.middle_at(x, y)) as f32;
-            let known = self.exclusion(index);
-            let is_reached = distance <= self.near[index].distance && distance < known.distance;
-            if next > 1 && !is_reached || known.by == number {
-                continue;
-            }
-            self.set_exclusion(index, Exclusion { distance, by: number });
-            queue.extend(self.beside(x, y));
-        }
-    }
-
-    /// Takes the points within `radius` off the exclude list.
-    pub fn readmit(&mut self, at: Point, radius: f64) {
-        let columns = self.levels[0].columns as i64;
-        let rows = self.levels[0].best.len() as i64 / columns;
-        let side = self.cell * BLOCK as f64;
-        let of = |v: f64, most: i64| ((v / side).floor() as i64).clamp(0, most - 1);
-        let from = at - self.origin;
-        let (x0, x1) = (of(from.x - radius, columns), of(from.x + radius, columns));
-        let (y0, y1) = (of(from.y - radius, rows), of(from.y + radius, rows));
-        let mut freed = Vec::new();
-        for block in (y0..=y1).flat_map(|y| (x0..=x1).map(move |x| (y * columns + x) as usize)) {
-            let excluded = &mut self.excluded;
-            self.excluded_in[block].retain(|&number| {
-                let is_near = excluded[number as usize].is_some_and(|point| point.distance(at) <= radius);
-                if is_near {
-                    freed.push((number, excluded[number as usize].take()));
-                }
-                !is_near
-            });
-        }
-        for (number, point) in freed {
-            if let Some(start) = point.and_then(|point| self.place(point)) {
-                self.free(number, start);
-            }
-        }
-    }
-
-    /// Clears the exclude list.
-    pub fn readmit_all(&mut self) {
-        for block in 0..self.exclusions.len() {
-            if self.exclusions[block].take().is_some() {
-                self.touch(block * BLOCK * BLOCK);
-            }
-        }
-        self.excluded.clear();
-        self.excluded_in.iter_mut().for_each(Vec::clear);
-    }
-
-    /// Cells that a point was nearest to look for another.
-    fn free(&mut self, number: u32, start: (usize, usize)) {
-        let mut cells = vec![start];
-        let mut largest = 0.0_f32;
-        let mut next = 0;
-        while let Some(&(x, y)) = cells.get(next) {
-            next += 1;
-            let index = self.number(x, y);
-            if self.exclusion(index).by != number {
-                continue;
-            }
-            self.set_exclusion(index, FREE);
-            largest = largest.max(self.near[index].distance);
-            cells.extend(self.beside(x, y));
-        }
-        let reach = f64::from(largest).max(0.0);
-        let others = self.listed_near(self.middle_at(start.0, start.1), 2.0 * reach);
-        for (x, y) in cells {
-            let index = self.number(x, y);
-            if self.exclusion(index).by != NONE {
-                continue;
-            }
-            let at = self.middle_at(x, y);
-            let mut nearest = FREE;
-            for &(number, point) in &others {
-                let distance = point.distance(at) as f32;
-                if distance <= self.near[index].distance && distance < nearest.distance {
-                    nearest = Exclusion { distance, by: number };
-                }
-            }
-            if nearest.by != NONE {
-                self.set_exclusion(index, nearest);
-            }
-        }
-    }
-
-    fn listed_near(&self, at: Point, radius: f64) -> Vec<(u32, Point)> {
-        let columns = self.levels[0].columns as i64;
-        let rows = self.levels[0].best.len() as i64 / columns;
-        let side = self.cell * BLOCK as f64;
-        let of = |v: f64, most: i64| ((v / side).floor() as i64).clamp(0, most - 1);
-        let from = at - self.origin;
-        let (x0, x1) = (of(from.x - radius, columns), of(from.x + radius, columns));
-        let (y0, y1) = (of(from.y - radius, rows), of(from.y + radius, rows));
-        (y0..=y1)
-            .flat_map(|y| (x0..=x1).map(move |x| (y * columns + x) as usize))
-            .flat_map(|block| &self.excluded_in[block])
-            .filter_map(|&number| Some((number, self.excluded[number as usize]?)))
-            .filter(|(_, point)| point.distance(at) <= radius)
-            .collect()
-    }
 }
 
 #[inline]
 fn cell_number(x: usize, y: usize, block_columns: usize) -> usize {
     let block = y / BLOCK * block_columns + x / BLOCK;
     block * BLOCK * BLOCK + y % BLOCK * BLOCK + x % BLOCK
-}
-
-/// Room at two scales: all of it in coarse cells, and what is near to something in fine ones. The first
-/// elements of a large container change distances all over it, which would cost too much in fine cells.
-#[derive(Clone, Debug)]
-pub(super) struct Room {
-    pub fine: Space,
-    coarse: Space,
-    /// True once no place has room for a large circle, whatever stops it: none can come any more, and
-    /// coarse cells need not be kept up.
-    is_small: bool,
-    /// How often there was no large circle to be chosen.
-    without: usize,
-}
-
-impl Room {
-    /// Coarse cells along the side of a fine one.
-    const COARSE: f64 = 3.0;
-    /// Distances up to so many fine cells are known there.
-    const NEAR: f64 = 16.0;
-    /// Circles larger than so many fine cells are looked for in the coarse ones, whose middles may be
-    /// as far from a circle's as the difference allows.
-    const LARGE: f64 = 12.0;
-
-    /// A circle that overlaps its own images by more than so many fine cells is of no use to any rule;
-    /// one that does by less leads growth up to the seam.
-    const SEAM: f64 = 7.0;
-
-    /// The room in a region, or all over a box, between the images of symmetric growth.
-    pub fn new(region: Option<&Region>, bounds: Rect, cell: f64, images: &[Affine]) -> Self {
-        let to_images = |p: Point| images[1..].iter().map(move |&by| 0.5 * p.distance(by * p));
-        let fine_cell = cell;
-        let space = |cell: f64, most: f32| {
-            let (columns, rows) = Space::grid(bounds, cell);
-            let mut inside = match region {
-                Some(region) => inside_distances(region, bounds, cell, most),
-                None => vec![most; columns * rows],
-            };
-            if images.len() > 1 {
-                for (i, distance) in inside.iter_mut().enumerate() {
-                    let middle = Vec2::new((i % columns) as f64 + 0.5, (i / columns) as f64 + 0.5);
-                    let wall = to_images(bounds.origin() + cell * middle).fold(f64::INFINITY, f64::min);
-                    *distance = distance.min((wall + Self::SEAM * fine_cell) as f32);
-                }
-            }
-            Space::new(bounds, cell, &inside)
-        };
-        let (is_small, without) = (false, 0);
-        Room {
-            is_small,
-            without,
-            fine: space(cell, (Self::NEAR * cell) as f32),
-            coarse: space(Self::COARSE * cell, f32::MAX),
-        }
-    }
-
-    /// Side of a fine cell.
-    pub fn cell(&self) -> f64 {
-        self.fine.cell
-    }
-
-    /// Distance from a place, about, to what is nearest; `None` outside.
-    pub fn distance(&self, at: Point) -> Option<f64> {
-        let near = self.fine.distance(at)?;
-        let is_known = near < (Self::NEAR - 1.0) * self.fine.cell;
-        if is_known { Some(near) } else { self.coarse.distance(at).or(Some(near)) }
-    }
-
-    /// As [`Space::add`].
-    pub fn add(&mut self, piece: &Piece, element: u32, only: bool) {
-        self.fine.add(piece, element, only);
-        if !self.is_small {
-            self.coarse.add(piece, element, only);
-        }
-    }
-
-    /// As [`Space::largest`].
-    pub fn largest(&mut self, smallest: f64) -> Option<Circle> {
-        if !self.is_small {
-            let large = self.coarse.largest(smallest.max(Self::LARGE * self.fine.cell));
-            if large.is_some() {
-                return large;
-            }
-            // To look at all cells takes long: not every time.
-            const LOOK_EVERY: usize = 64;
-            if self.without.is_multiple_of(LOOK_EVERY) {
-                let most = (Self::LARGE * self.fine.cell) as f32;
-                self.is_small = self.coarse.near.iter().all(|near| near.distance <= most);
-            }
-            self.without += 1;
-        }
-        self.fine.largest(smallest)
-    }
-
-    /// As [`Space::exclude`].
-    pub fn exclude(&mut self, at: Point) {
-        self.fine.exclude(at);
-        if !self.is_small {
-            self.coarse.exclude(at);
-        }
-    }
-
-    /// As [`Space::readmit`].
-    pub fn readmit(&mut self, at: Point, radius: f64) {
-        self.fine.readmit(at, radius);
-        if !self.is_small {
-            self.coarse.readmit(at, radius);
-        }
-    }
-
-    /// As [`Space::readmit_all`].
-    pub fn readmit_all(&mut self) {
-        self.fine.readmit_all();
-        self.coarse.readmit_all();
-    }
-
-    /// As [`Space::view`], of circles of all sizes.
-    pub fn view(&self, smallest: f64) -> (Vec<Circle>, Vec<Point>) {
-        let large = Self::LARGE * self.fine.cell;
-        let (mut circles, excluded) = self.fine.view(smallest);
-        circles.retain(|circle| circle.radius <= large);
-        circles.extend(self.coarse.view(large).0);
-        (circles, excluded)
-    }
-
-    /// As [`Space::widest`].
-    pub fn widest(&self) -> Option<Point> {
-        self.coarse.widest().or_else(|| self.fine.widest())
-    }
-
-    /// As [`Space::widest_by`].
-    pub fn widest_by(&self, other: impl Fn(Point) -> f64) -> Option<Point> {
-        self.coarse.widest_by(other)
-    }
-
-    /// As [`Space::farthest`].
-    pub fn farthest(&self, towards: Vec2) -> Option<Point> {
-        self.coarse.farthest(towards).or_else(|| self.fine.farthest(towards))
-    }
-}
-
-/// For every cell of a grid the distance of its middle to the boundary of a region, `most` at most and
-/// 0 outside.
-/// Cells hand the edges that they are nearest to on to their neighbours, so that distances are to edges
-/// and not to cells.
-fn inside_distances(region: &Region, bounds: Rect, cell: f64, most: f32) -> Vec<f32> {
-    let (columns, rows) = Space::grid(bounds, cell);
-    let edges: Vec<(Point, Point)> = region
-        .contours()
-        .iter()
-        .flat_map(|contour| (0..contour.len()).map(move |i| (contour[i], contour[(i + 1) % contour.len()])))
-        .collect();
-    let inside = covered(region.contours(), bounds.origin(), cell, columns, rows);
-    let mut nearest = vec![u32::MAX; columns * rows];
-    let mut distances = vec![most; columns * rows];
-    let mut queue: Vec<(u32, u32)> = Vec::new();
-    let mut take = |queue: &mut Vec<(u32, u32)>, nearest: &mut [u32], x: usize, y: usize, edge: u32| {
-        let i = y * columns + x;
-        if nearest[i] == edge {
-            return;
-        }
-        let (a, b) = edges[edge as usize];
-        let middle = bounds.origin() + cell * Vec2::new(x as f64 + 0.5, y as f64 + 0.5);
-        let distance = point_segment(middle, a, b) as f32;
-        if distance < distances[i] {
-            (nearest[i], distances[i]) = (edge, distance);
-            queue.push((x as u32, y as u32));
-        }
-    };
-    for (number, &(a, b)) in edges.iter().enumerate() {
-        Piece::Segment(a, b).along(0.5 * cell, |p| {
-            let (x, y) = ((p.x - bounds.x0) / cell, (p.y - bounds.y0) / cell);
-            for (dx, dy) in [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)] {
-                let (x, y) = (x + dx, y + dy);
-                if x >= 0.0 && y >= 0.0 && x < columns as f64 && y < rows as f64 {
-                    take(&mut queue, &mut nearest, x as usize, y as usize, number as u32);
-                }
-            }
-        });
-    }
-    let mut next = 0;
-    while let Some(&(x, y)) = queue.get(next) {
-        next += 1;
-        let (x, y) = (x as usize, y as usize);
-        let edge = nearest[y * columns + x];
-        for y in y.saturating_sub(1)..(y + 2).min(rows) {
-            for x in x.saturating_sub(1)..(x + 2).min(columns) {
-                if inside[y * columns + x] {
-                    take(&mut queue, &mut nearest, x, y, edge);
-                }
-            }
-        }
-    }
-    for (distance, inside) in distances.iter_mut().zip(inside) {
-        if !inside {
-            *distance = 0.0;
-        }
-    }
-    distances
 }

@@ -4,6 +4,7 @@ use crate::geom::bend::Bend;
 use crate::geom::flatten::flatten;
 use crate::geom::polyline::{left_of, length, resample};
 use crate::geom::spline::{Curve, Profile};
+use crate::grow::rules::Look;
 use kurbo::{Affine, BezPath, Point, Shape, Vec2};
 use rinceau_format::{Document, Element, Error, Scene, Selection, Style};
 
@@ -37,6 +38,13 @@ impl Arts {
             arts.push(Art::new(element, true)?);
         }
         Ok(Arts(arts))
+    }
+
+    /// The first look that calls for artwork that does not exist, and what there is.
+    pub fn missing<'l>(&self, looks: &'l [Look]) -> Option<(&'l Look, String)> {
+        let is_art = |look: &&Look| !matches!(look.art.as_str(), "none" | "outline" | "fill");
+        let missing = looks.iter().filter(is_art).find(|look| self.named(&look.art).is_err());
+        missing.map(|look| (look, self.names()))
     }
 
     /// What the artist has drawn for a type of element.

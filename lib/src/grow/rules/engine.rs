@@ -55,7 +55,7 @@ impl State {
 }
 
 /// A handle of what rules and the framework share.
-pub(super) type Shared = Rc<RefCell<State>>;
+pub(in crate::grow) type Shared = Rc<RefCell<State>>;
 
 /// What a function of the language gives.
 pub(super) type Answer<T> = Result<T, Box<EvalAltResult>>;

@@ -12,7 +12,7 @@ mod queries;
 mod translate;
 mod values;
 
-pub(super) use engine::{Applied, Rules, State};
+pub(super) use engine::{Applied, Rules, Shared, State};
 pub use file::Look;
 pub use lexer::RuleText;
 pub(super) use queries::corners;

@@ -188,25 +188,11 @@ fn register_ornament(engine: &mut Engine, shared: &Shared) {
     }
     let state = shared.clone();
     engine.register_fn("nearest", move |kind: ImmutableString, p: Dynamic| -> Answer<Dynamic> {
-        let at = point(&state, &p)?;
         let index = kind_index(&state, &kind)?;
-        let mut state = state.borrow_mut();
-        let reach = state.world.bounds.size().to_vec2().hypot();
-        let found = state.world.nearest(Some(index), at, reach);
-        Ok(found.map_or(Dynamic::UNIT, |(element, _)| {
-            Dynamic::from(ElementRef(state.world.elements[element as usize].serial))
-        }))
+        nearest(&state, Some(index), &p)
     });
     let state = shared.clone();
-    engine.register_fn("nearest", move |p: Dynamic| -> Answer<Dynamic> {
-        let at = point(&state, &p)?;
-        let mut state = state.borrow_mut();
-        let reach = state.world.bounds.size().to_vec2().hypot();
-        let found = state.world.nearest(None, at, reach);
-        Ok(found.map_or(Dynamic::UNIT, |(element, _)| {
-            Dynamic::from(ElementRef(state.world.elements[element as usize].serial))
-        }))
-    });
+    engine.register_fn("nearest", move |p: Dynamic| nearest(&state, None, &p));
     let state = shared.clone();
     engine.register_fn("clearance", move |p: ProxyRef, reach: Dynamic| -> Answer<f64> {
         let proxy = get(&state, p)?;
@@ -242,6 +228,11 @@ fn register_ornament(engine: &mut Engine, shared: &Shared) {
         world.space.readmit_all();
         Ok(())
     });
+    register_targets(engine, shared);
+}
+
+/// The fixed elements that growth may seek.
+fn register_targets(engine: &mut Engine, shared: &Shared) {
     let state = shared.clone();
     engine.register_fn("targets", move || -> Array {
         let state = state.borrow();
@@ -253,6 +244,16 @@ fn register_ornament(engine: &mut Engine, shared: &Shared) {
         let meant = state.targets.iter().filter(|(name, _)| *name == *kind);
         meant.map(|(_, circle)| Dynamic::from(*circle)).collect()
     });
+}
+
+/// The placed element, of one type or any, that is nearest to a place.
+fn nearest(shared: &Shared, kind: Option<usize>, place: &Dynamic) -> Answer<Dynamic> {
+    let at = point(shared, place)?;
+    let mut state = shared.borrow_mut();
+    let reach = state.world.bounds.size().to_vec2().hypot();
+    let found = state.world.nearest(kind, at, reach);
+    let reference = |(element, _)| ElementRef(state.world.elements[element as usize].serial);
+    Ok(found.map_or(Dynamic::UNIT, |found| Dynamic::from(reference(found))))
 }
 
 fn kind_index(shared: &Shared, kind: &str) -> Answer<usize> {

@@ -1,0 +1,155 @@
+//! Where growth may be and what it starts from (000 4.1; W-073, W-103), in units of the rules.
+
+use super::Params;
+use super::piece::{Kind, Proxy};
+use super::rules::{Rules, Shared, corners};
+use super::space::Circle;
+use super::symmetry::{Extent, Symmetry};
+use super::world::{self, World};
+use crate::geom::boolean::Contour;
+use crate::geom::region::Region;
+use crate::shapes::Shapes;
+use kurbo::{Affine, CubicBez, ParamCurve, PathSeg, Point, Shape, Vec2};
+use rinceau_format::Scene;
+
+/// Seeds of one container at most.
+const MOST_SEEDS: usize = 1000;
+
+/// What the artist has given to start from.
+pub(super) struct Start<'a> {
+    pub scene: &'a Scene,
+    pub shapes: &'a Shapes,
+    /// Of the container.
+    pub index: usize,
+    pub params: &'a Params,
+    /// Length of a unit of the rules.
+    pub unit: f64,
+}
+
+impl Start<'_> {
+    /// Where ornament may be; `None` if there is no room.
+    pub fn region(&self, symmetry: &Symmetry) -> Option<Region> {
+        let unit = self.unit;
+        let px = self.scene.px_per_unit;
+        let edge = match self.params.edge.to_user(px) {
+            0.0 => 0.5 * unit,
+            edge => edge,
+        };
+        let gap = match self.params.gap.to_user(px) {
+            0.0 => unit,
+            gap => gap,
+        };
+        let region = match symmetry.extent {
+            Extent::Band => self.shapes.free_repeated(self.index, gap, edge),
+            _ => self.shapes.free(self.index, gap, edge),
+        }?;
+        let small: Vec<Contour> = region
+            .contours()
+            .iter()
+            .map(|contour| contour.iter().map(|p| (p.to_vec2() / unit).to_point()).collect())
+            .collect();
+        match symmetry.extent {
+            Extent::Plane => Region::new(small),
+            _ => Region::new(symmetry.shared(&small)),
+        }
+    }
+
+    /// Where growth starts: marked seeds, or as the artist wishes if nothing else
+    /// is there to grow from.
+    pub fn seeds(&self, world: &World, by_itself: bool) -> Vec<Point> {
+        let unit = self.unit;
+        let seeds = self.scene.seeds.iter().map(|seed| (seed.at.to_vec2() / unit).to_point());
+        let is_inside = |p: &Point| world.space.distance(*p).is_some_and(|distance| distance > 0.0);
+        let marked: Vec<Point> = seeds.filter(is_inside).take(MOST_SEEDS).collect();
+        if !marked.is_empty() || !by_itself {
+            return marked;
+        }
+        // Away from its own images, and from the boundary.
+        let widest = || match world.images() {
+            [_] => world.space.widest(),
+            _ => world.space.widest_by(|p| world.wall_distance(p)),
+        };
+        match self.params.start.as_str() {
+            "lower-left" => {
+                let bounds = world.bounds;
+                let towards = Vec2::new(-bounds.height().max(1e-9), bounds.width().max(1e-9));
+                world.space.farthest(towards).into_iter().collect()
+            }
+            "corners" => {
+                let corners = world.region.as_ref().map(corners).unwrap_or_default();
+                let inner = corners.into_iter().map(|(at, into)| at + 2.0 * into).filter(|p| is_inside(p));
+                let inner: Vec<Point> = inner.take(MOST_SEEDS).collect();
+                if inner.is_empty() { widest().into_iter().collect() } else { inner }
+            }
+            _ => widest().into_iter().collect(),
+        }
+    }
+
+    /// Drawn stems, piece by piece.
+    pub fn stems(&self) -> Vec<Vec<CubicBez>> {
+        let shrink = Affine::scale(1.0 / self.unit);
+        let stems = self.scene.stems.iter().chain(self.scene.guides.iter().filter(|guide| !guide.marked));
+        stems
+            .map(|stem| {
+                (shrink * stem.path.clone()).segments().map(|segment| PathSeg::to_cubic(&segment)).collect()
+            })
+            .collect()
+    }
+
+    /// What is fixed: places to grow to.
+    pub fn targets(&self) -> Vec<(String, Circle)> {
+        let unit = self.unit;
+        let target = |fixed: &rinceau_format::Fixed| {
+            let boxes = fixed.parts.iter().map(|part| (part.transform * part.path.clone()).bounding_box());
+            let bounds = boxes.reduce(|a, b| a.union(b))?;
+            let center = (bounds.center().to_vec2() / unit).to_point();
+            let radius = bounds.size().to_vec2().hypot() / (2.0 * 2.0_f64.sqrt() * unit);
+            Some((fixed.source.label.clone(), Circle { center, radius }))
+        };
+        self.scene.fixed.iter().filter_map(target).collect()
+    }
+}
+
+/// The type of element that drawn stems are: one called so, or the first that is a curve.
+pub(super) fn stem_kind(world: &World) -> Option<usize> {
+    let is_stem = |kind: &&world::ElementKind| kind.proxies.first() == Some(&Kind::Bezier);
+    let named = world.kinds.iter().position(|kind| kind.name == "stem" && is_stem(&kind));
+    named.or_else(|| world.kinds.iter().position(|kind| is_stem(&kind)))
+}
+
+/// Places seeds, and what of drawn stems lies inside; returns how many seeds.
+pub(super) fn plant(
+    rules: &Rules,
+    shared: &Shared,
+    seeds: &[Point],
+    stems: Option<(usize, &[Vec<CubicBez>])>,
+) -> usize {
+    /// Pieces of a curve that crosses the outline.
+    const PARTS: u32 = 16;
+    let mut state = shared.borrow_mut();
+    let world = state.world();
+    let mut placed = 0;
+    for &seed in seeds {
+        let element = world.fresh(rules.seed(), world::NONE);
+        world.elements[element as usize].proxies[0] = Some(Proxy::Point(seed));
+        placed += usize::from(world.commit(world::NONE, 1));
+    }
+    let Some((kind, stems)) = stems else { return placed };
+    for &curve in stems.iter().flatten() {
+        let parts = (0..PARTS).map(|i| {
+            let at = |i: u32| f64::from(i) / f64::from(PARTS);
+            curve.subsegment(at(i)..at(i + 1))
+        });
+        let is_inside = |world: &World, curve| world.has_inside(&Proxy::Bezier(curve));
+        let curves = if is_inside(world, curve) { vec![curve] } else { parts.collect() };
+        for curve in curves {
+            if is_inside(world, curve) {
+                let element = world.fresh(kind, world::NONE);
+                world.elements[element as usize].proxies[0] = Some(Proxy::Bezier(curve));
+                world.children.push(element);
+            }
+        }
+    }
+    world.commit(world::NONE, 0);
+    placed
+}
