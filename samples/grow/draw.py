@@ -118,25 +118,7 @@ def styles():
     save("styles", 770, 510, "\n".join(body))
 
 
-def targets():
-    """Vines that grow towards blossoms which stand where they are."""
-    body = [panel("garden", heart(20, 20, 1.3), rules="deliver")]
-    for i, (x, y) in enumerate([(120, 130), (310, 130), (215, 215), (215, 320)]):
-        petals = "".join(
-            f'<ellipse cx="0" cy="-13" rx="8" ry="12" transform="rotate({k * 60})" fill="#b4482f"/>' for k in range(6)
-        )
-        body.append(
-            f'<g id="rose{i + 1}" class="rinceau-fixed" transform="translate({x} {y})">{petals}'
-            '<circle r="7" fill="#dd9a3c"/></g>'
-        )
-    rules = """// Branches seek the nearest fixed blossom that none has reached yet; spirals fill the rest.
-smallest 1.2
-element seed: point
-element branch: bezier, hand = 1
-element arm: bezier, hand = 1, width = 1.0
-
-let reached = [];
-
+SCROLL = """
 fn foot(line, place) {
     let best = 0.0;
     let least = 1e9;
@@ -169,7 +151,29 @@ fn scroll(from, center, hand, width) {
         radius *= shrink;
     }
 }
+"""
 
+
+def targets():
+    """Vines that grow towards blossoms which stand where they are."""
+    body = [panel("garden", heart(20, 20, 1.3), rules="deliver")]
+    for i, (x, y) in enumerate([(120, 130), (310, 130), (215, 215), (215, 320)]):
+        petals = "".join(
+            f'<ellipse cx="0" cy="-13" rx="8" ry="12" transform="rotate({k * 60})" fill="#b4482f"/>' for k in range(6)
+        )
+        body.append(
+            f'<g id="rose{i + 1}" class="rinceau-fixed" transform="translate({x} {y})">{petals}'
+            '<circle r="7" fill="#dd9a3c"/></g>'
+        )
+    rules = """// Branches seek the nearest fixed blossom that none has reached yet; spirals fill the rest.
+smallest 1.2
+element seed: point
+element branch: bezier, hand = 1
+element arm: bezier, hand = 1, width = 1.0
+
+let reached = [];
+
+@SCROLL@
 // The blossom nearest to a place that is still alone.
 fn seek(from, reached) {
     let least = 1e9;
@@ -241,45 +245,15 @@ rule arm -> {
 look arm: art stem, width 1.2, thick width, join
 look branch: art vine, width 1.5
 """
+    rules = rules.replace("@SCROLL@", SCROLL.strip())
     metadata = f'<metadata><rinceau:rules name="deliver">\n{html.escape(rules, quote=False)}</rinceau:rules></metadata>\n'
     seed = '<circle id="start" class="rinceau-seed" cx="215" cy="268" r="2" fill="none"/>'
     save("targets", 430, 410, "\n".join(body + [seed]), metadata)
 
 
-SCROLLS = """
-fn foot(line, place) {
-    let best = 0.0;
-    let least = 1e9;
-    let k = 0;
-    while k <= 8 {
-        let d = distance(line.at(k / 8.0), place);
-        if d < least { least = d; best = k / 8.0; }
-        k += 1;
-    }
-    best
-}
-
-fn scroll(from, center, hand, width) {
-    let step = PI() / 4.0;
-    let shrink = 0.885;
-    let radius = distance(from, center);
-    let spoke = from - center;
-    let pitch = atan(-ln(shrink) / step);
-    let at = from;
-    let whole = radius;
-    while radius > max(0.8, 0.16 * whole) {
-        let next = spoke + hand * step;
-        let to = center.offset(next, radius * shrink);
-        let piece = add("arm");
-        piece.set(at, spoke + hand * (PI() / 2.0 + pitch), 0.347, to, next + hand * (PI() / 2.0 + pitch), 0.347);
-        piece.hand = hand;
-        piece.width = width * (0.3 + 0.7 * radius / whole);
-        at = to;
-        spoke = next;
-        radius *= shrink;
-    }
-}
-
+SCROLLS = (
+    SCROLL
+    + """
 rule arm -> {
     if goal.radius < 2.0 { return FAILURE; }
     let t = foot(parent, goal.center);
@@ -291,6 +265,7 @@ rule arm -> {
     scroll(from, from.offset(goal.center - from, size), hand, min(width, max(parent.width, 0.7 * width)));
 }
 """
+)
 
 
 def corners():
@@ -368,6 +343,40 @@ look arm: art stem, width 1.2, thick width, join
     save("half-open", 420, 580, panel("page", "M10,10H410V570H10Z", rules="half-open") + "\n" + seed, metadata)
 
 
+def half_open_band():
+    """A band that is closed below, fades above, and repeats without a seam: the edge of its growth is
+    a wave with a whole number of periods."""
+    rules = (
+        """// Closed below, open above; as wide as the shape, the band repeats.
+smallest 1.0
+element seed: point
+element arm: bezier, hand = 1, width = 1.0
+
+fn is_open(place) {
+    let p = panel();
+    let along = (place.x - p.left) / p.width;
+    let up = (p.bottom - place.y) / p.height;
+    up > 0.5 + 0.26 * cos(6.0 * PI() * along)
+}
+
+rule seed -> {
+    parent.sterile = true;
+    scroll(parent.center, parent.center.offset(-1.1, 17.0), 1, 1.5);
+}
+"""
+        + SCROLLS.replace(
+            "    if goal.radius < 2.0 { return FAILURE; }\n    let t", "    if goal.radius < 1.4 || is_open(goal.center) { return FAILURE; }\n    let t"
+        )
+        + """
+look arm: art stem, width 1.2, thick width, join
+"""
+    )
+    metadata = f'<metadata><rinceau:rules name="half-open-band">\n{html.escape(rules, quote=False)}</rinceau:rules></metadata>\n'
+    seed = '<circle id="start" class="rinceau-seed" cx="197" cy="121" r="2" fill="none"/>'
+    band = panel("edge", "M0,0H660V130H0Z", rules="half-open-band", symmetry="p111", repeats=3, rule_unit=2.6)
+    save("half-open-band", 660, 130, band + "\n" + seed, metadata)
+
+
 def drawn():
     """The drawing's own blossom and leaf for the elements of a pattern."""
     body = [
@@ -390,4 +399,5 @@ if __name__ == "__main__":
     targets()
     corners()
     half_open()
+    half_open_band()
     drawn()

@@ -7,7 +7,8 @@ use kurbo::{Affine, BezPath, ParamCurve, Point, Shape};
 use proptest::prelude::*;
 use rinceau::geom::near::{crosses, point_segment};
 use rinceau::geom::region::Region;
-use rinceau::quality;
+use rinceau::grow::{Design, Params};
+use rinceau::{Deadline, Rng, quality};
 use rinceau_format::{Artwork, Error, RuleSet, Scene};
 use support::geometry::{assert_inside, blob, cases, contours, generated, pieces, read, rng_seed, waves};
 use support::{RINCEAU, layers, parse, rinceau, svg};
@@ -159,6 +160,25 @@ fn the_same_seed_grows_the_same_and_styles_do_not_matter() {
     }
 }
 
+/// What has grown once is drawn in one style after another, as if it had grown in each.
+#[test]
+fn a_design_is_restyled_without_growing_again() {
+    let (_, scene) = read(svg(PANEL));
+    let own = |style| {
+        Params::default().overridden([("rules", "vines"), ("style", style), ("palette", "ink")]).unwrap()
+    };
+    let design = Design::grow(&own("drawn"), &scene, &mut Rng::new(7), &mut Deadline::new(None)).unwrap();
+    let mut seen: Vec<String> = Vec::new();
+    for style in ["drawn", "outline", "brush", "ribbon", "rope", "leafy", "beads", "acanthus"] {
+        let restyled = design.draw(&own(style), &scene).unwrap();
+        let grown = grown(&scene, &[("rules", "vines"), ("style", style), ("palette", "ink")], 7).unwrap();
+        let drawn = format!("{:?}", restyled.groups);
+        assert_eq!(drawn, format!("{:?}", grown.groups), "{style}");
+        assert!(!seen.contains(&drawn), "{style} looks like another");
+        seen.push(drawn);
+    }
+}
+
 /// A plain greedy packing of circles, largest place first, with the same largest and smallest radius,
 /// covers less.
 #[test]
@@ -251,7 +271,9 @@ mod symmetry {
     /// What crosses one side of a tile crosses the other.
     #[test]
     fn bands_and_wallpapers_have_no_seam() {
+        let half_open = include_str!("../../samples/grow/half-open-band.svg");
         for (name, height) in [
+            ("half-open", 130.0),
             ("p111", 120.0),
             ("pma2", 120.0),
             ("pmm2", 120.0),
@@ -260,10 +282,15 @@ mod symmetry {
             ("p4m", 400.0),
             ("cmm", 400.0),
         ] {
-            let (_, scene) =
-                read(svg(&format!("<rect class='rinceau-container' width='400' height='{height}'/>")));
-            let artwork =
-                grown(&scene, &[("rules", "vines"), ("symmetry", name), ("rule-unit", "4")], 1).unwrap();
+            let (scene, params) = match name {
+                "half-open" => (read(half_open).1, vec![]),
+                name => (
+                    read(svg(&format!("<rect class='rinceau-container' width='400' height='{height}'/>"))).1,
+                    vec![("rules", "vines"), ("symmetry", name), ("rule-unit", "4")],
+                ),
+            };
+            let width = scene.containers[0].outlines[0].path.bounding_box().width();
+            let artwork = grown(&scene, &params, 1).unwrap();
             let all = pieces(&artwork, "elements");
             let crossing = |x: f64| {
                 let is_over = |piece: &&Vec<Vec<Point>>| {
@@ -280,7 +307,7 @@ mod symmetry {
                 found.sort_by(|a, b| a.y.total_cmp(&b.y));
                 found
             };
-            let (left, right) = (crossing(0.0), crossing(400.0));
+            let (left, right) = (crossing(0.0), crossing(width));
             assert_eq!(left.len(), right.len(), "{name}");
             // A mirror on the side keeps everything off it.
             assert!(!left.is_empty() || matches!(name, "pma2" | "pmm2" | "p4m" | "cmm"), "{name}");

@@ -131,6 +131,42 @@ fn a_selected_shape_fills_with_growth() {
     assert!(elements(layer).len() > 100, "{} elements", elements(layer).len());
 }
 
+/// Rules from a file that is chosen in the dialog, whose values Inkscape keeps among its preferences,
+/// and from the drawing's metadata.
+#[test]
+fn growth_takes_rules_from_a_file_and_from_the_drawing() {
+    let user = User::new();
+    let rules = |radius: u32| {
+        format!(
+            "element seed: point\nelement dot: circle\nrule seed -> dot d {{ d.set(parent, {radius}); parent.sterile = true; }}\nlook dot: art fill"
+        )
+    };
+    let shape = "<rect id=\"panel\" x=\"20\" y=\"20\" width=\"160\" height=\"160\" style=\"fill:#e8e0c8\"/>";
+    let metadata = format!(
+        "<metadata><rinceau:rules name=\"three\">{}</rinceau:rules></metadata>\n",
+        rules(3).replace('>', "&gt;")
+    );
+    let width = |drawing: &str| {
+        let xml = parse(drawing);
+        let [layer] = layers(&xml)[..] else { panic!("{} layers:\n{drawing:.3000}", layers(&xml).len()) };
+        let [dot] = elements(layer)[..] else { panic!("one dot:\n{drawing:.3000}") };
+        let path = kurbo::BezPath::from_svg(dot.attribute("d").expect("a path")).unwrap();
+        kurbo::Shape::bounding_box(&path).width()
+    };
+    // A panel of 160 units is 100 units of the rules wide.
+    let drawn = user.edit(&svg(&(metadata.clone() + shape)), "select-by-id:panel;org.rinceau.grow.noprefs");
+    assert!((width(&drawn) - 2.0 * 3.0 * 1.6).abs() < 0.1, "{}", width(&drawn));
+
+    let path = file(&user.home, "own.rules", rules(7));
+    let preferences = format!(
+        "<inkscape version=\"1\"><group id=\"extensions\" org.rinceau.grow.rules_file=\"{}\"/></inkscape>",
+        path.display()
+    );
+    std::fs::write(user.home.path().join("profile/preferences.xml"), preferences).unwrap();
+    let drawn = user.edit(&svg(&(metadata + shape)), "select-by-id:panel;org.rinceau.grow.noprefs");
+    assert!((width(&drawn) - 2.0 * 7.0 * 1.6).abs() < 0.1, "{}", width(&drawn));
+}
+
 #[test]
 fn a_selected_shape_grows_a_vine_and_grows_anew() {
     let user = User::new();

@@ -122,7 +122,7 @@ impl Design {
                 arts: &self.arts,
             };
             let mut state = panel.shared.borrow_mut();
-            artwork.groups.extend(drawing.groups(state.world(), &panel.grown)?);
+            artwork.groups.extend(drawing.groups(state.world(), &panel.grown));
         }
         let visible = artwork.groups.iter().filter(|group| !group.hidden);
         let elements: usize = visible.map(|group| group.items.len()).sum();

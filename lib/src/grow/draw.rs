@@ -13,7 +13,7 @@ use crate::palette::palette;
 use art::Art;
 pub(super) use art::Arts;
 use kurbo::{Affine, BezPath, Point, Rect, Shape};
-use rinceau_format::{Error, Group, Item, Part, Style};
+use rinceau_format::{Group, Item, Part, Style};
 use strand::{How, Strand, strands};
 
 /// Width of an outline in units of the rules.
@@ -31,10 +31,8 @@ pub(super) struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    /// Sublayers for an ornament.
-    ///
-    /// Errors: an artwork that is called for and does not exist.
-    pub fn groups(&self, world: &World, grown: &Grown) -> Result<Vec<Group>, Error> {
+    /// Sublayers for an ornament. Artwork that looks call for is known to exist.
+    pub fn groups(&self, world: &World, grown: &Grown) -> Vec<Group> {
         let mut elements = Group { name: "elements".into(), ..Group::default() };
         let of_kind = |kind: usize| self.looks.iter().find(|look| look.kind == kind);
         // In the order of the looks; what has none comes first.
@@ -58,17 +56,17 @@ impl Drawing<'_> {
                 join: false,
             };
             let look = of_kind(kind).unwrap_or(&plain);
-            self.kind(world, look, &mut elements)?;
+            self.kind(world, look, &mut elements);
         }
         let mut groups = vec![elements];
         groups.push(self.proxies(world));
         if let Some(view) = &grown.view {
             groups.push(self.view(world, view));
         }
-        Ok(groups)
+        groups
     }
 
-    fn kind(&self, world: &World, look: &Look, group: &mut Group) -> Result<(), Error> {
+    fn kind(&self, world: &World, look: &Look, group: &mut Group) {
         let arts = self.arts;
         let name = world.kinds[look.kind].name.clone();
         let style = self.params.style.as_str();
@@ -87,17 +85,17 @@ impl Drawing<'_> {
                 (_, "drawn") => match look.art.as_str() {
                     "none" => continue,
                     "outline" | "fill" => None,
-                    art => Some(arts.named(art)?),
+                    art => arts.named(art),
                 },
                 // Another stroke for lines that are one stroke; leaves and blossoms stay.
                 (_, style) if is_line && strand.widths.is_none() && (look.join || look.art == "outline") => {
-                    Some(arts.named(style)?)
+                    arts.named(style)
                 }
                 _ => match (drawn, look.art.as_str()) {
                     (Some(art), _) => Some(art),
                     (_, "none") => continue,
                     (_, "outline" | "fill") => None,
-                    (_, art) => Some(arts.named(art)?),
+                    (_, art) => arts.named(art),
                 },
             };
             let parts = match art {
@@ -111,7 +109,6 @@ impl Drawing<'_> {
                 }
             }
         }
-        Ok(())
     }
 
     /// A part in its place in the drawing.

@@ -43,7 +43,7 @@ impl Arts {
     /// The first look that calls for artwork that does not exist, and what there is.
     pub fn missing<'l>(&self, looks: &'l [Look]) -> Option<(&'l Look, String)> {
         let is_art = |look: &&Look| !matches!(look.art.as_str(), "none" | "outline" | "fill");
-        let missing = looks.iter().filter(is_art).find(|look| self.named(&look.art).is_err());
+        let missing = looks.iter().filter(is_art).find(|look| self.named(&look.art).is_none());
         missing.map(|look| (look, self.names()))
     }
 
@@ -53,16 +53,8 @@ impl Arts {
     }
 
     /// The artwork of this name.
-    ///
-    /// Errors: there is none.
-    pub fn named(&self, name: &str) -> Result<&Art, Error> {
-        self.0.iter().find(|art| art.name == name).ok_or_else(|| {
-            Error::new(
-                "unknown-art",
-                format!("No artwork is called '{name}'"),
-                format!("Use {}", self.names()),
-            )
-        })
+    pub fn named(&self, name: &str) -> Option<&Art> {
+        self.0.iter().find(|art| art.name == name)
     }
 
     /// What there is.
