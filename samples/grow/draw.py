@@ -18,6 +18,11 @@ def save(name, width, height, body, metadata=""):
         out.write(text)
 
 
+def carried(name, rules):
+    """Metadata with growth rules."""
+    return f'<metadata><rinceau:rules name="{name}">\n{html.escape(rules, quote=False)}</rinceau:rules></metadata>\n'
+
+
 def panel(ident, d, **attributes):
     extra = "".join(f' rinceau:{name.replace("_", "-")}="{value}"' for name, value in attributes.items())
     return f'<path id="{ident}" class="rinceau-container"{extra} {PAPER} fill-rule="evenodd" d="{d}"/>'
@@ -246,7 +251,7 @@ look arm: art stem, width 1.2, thick width, join
 look branch: art vine, width 1.5
 """
     rules = rules.replace("@SCROLL@", SCROLL.strip())
-    metadata = f'<metadata><rinceau:rules name="deliver">\n{html.escape(rules, quote=False)}</rinceau:rules></metadata>\n'
+    metadata = carried("deliver", rules)
     seed = '<circle id="start" class="rinceau-seed" cx="215" cy="268" r="2" fill="none"/>'
     save("targets", 430, 410, "\n".join(body + [seed]), metadata)
 
@@ -304,7 +309,7 @@ look arm: art stem, width 1.2, thick width, join
 look rose: art peony
 """
     )
-    metadata = f'<metadata><rinceau:rules name="corners">\n{html.escape(rules, quote=False)}</rinceau:rules></metadata>\n'
+    metadata = carried("corners", rules)
     d = "M10,10H410V570H10ZM90,90V490H330V90Z"
     seed = '<circle id="start" class="rinceau-seed" cx="210" cy="50" r="2" fill="none"/>'
     save("corners", 420, 580, panel("frame", d, rules="corners") + "\n" + seed, metadata)
@@ -338,7 +343,7 @@ rule seed -> {
 look arm: art stem, width 1.2, thick width, join
 """
     )
-    metadata = f'<metadata><rinceau:rules name="half-open">\n{html.escape(rules, quote=False)}</rinceau:rules></metadata>\n'
+    metadata = carried("half-open", rules)
     seed = '<circle id="start" class="rinceau-seed" cx="45" cy="290" r="2" fill="none"/>'
     save("half-open", 420, 580, panel("page", "M10,10H410V570H10Z", rules="half-open") + "\n" + seed, metadata)
 
@@ -371,7 +376,7 @@ rule seed -> {
 look arm: art stem, width 1.2, thick width, join
 """
     )
-    metadata = f'<metadata><rinceau:rules name="half-open-band">\n{html.escape(rules, quote=False)}</rinceau:rules></metadata>\n'
+    metadata = carried("half-open-band", rules)
     seed = '<circle id="start" class="rinceau-seed" cx="197" cy="121" r="2" fill="none"/>'
     band = panel("edge", "M0,0H660V130H0Z", rules="half-open-band", symmetry="p111", repeats=3, rule_unit=2.6)
     save("half-open-band", 660, 130, band + "\n" + seed, metadata)
