@@ -1,7 +1,7 @@
 //! Space in cells: which stem or clip art each belongs to (checklist M-020, M-026, M-027).
 //!
-//! A shape claims every cell that it comes nearer to than the gap. A new shape must touch no
-//! cell that is claimed. Both sides are counted generously, by half the diagonal of a cell, so
+//! A stem claims every cell that it comes nearer to than the gap; clip art, which nothing may touch,
+//! closes them. A new shape must touch no cell that is claimed or closed. Both sides are counted generously, by half the diagonal of a cell, so
 //! two shapes that share no cell are apart by the gap for certain.
 
 use crate::geom::boolean::Contour;
@@ -18,29 +18,22 @@ pub(super) struct Owner(u32);
 
 impl Owner {
     pub const FREE: Owner = Owner(0);
-    /// Not in the region: the paper's -1.
-    pub const OUTSIDE: Owner = Owner(u32::MAX);
+    /// Not in the region, the paper's -1, or taken by clip art.
+    pub const CLOSED: Owner = Owner(u32::MAX);
 
-    /// A claim of the thing with this number.
-    fn of(id: u32, body: bool) -> Self {
-        Owner((id + 1) << 1 | u32::from(body))
+    /// A claim of the stem with this number.
+    fn of(stem: usize, body: bool) -> Self {
+        Owner((stem as u32 + 1) << 1 | u32::from(body))
     }
 
-    /// The thing, unless the cell is free or outside.
-    pub fn id(self) -> Option<u32> {
-        (self != Owner::FREE && self != Owner::OUTSIDE).then(|| (self.0 >> 1) - 1)
+    /// The stem, unless the cell is free or closed.
+    pub fn stem(self) -> Option<usize> {
+        (self != Owner::FREE && self != Owner::CLOSED).then(|| (self.0 >> 1) as usize - 1)
     }
 
-    /// True if the thing itself is there, not only its gap.
+    /// True if the stem itself is there, not only its gap.
     pub fn is_body(self) -> bool {
-        self.0 & 1 == 1 && self != Owner::OUTSIDE
-    }
-}
-
-impl Claim {
-    /// The owner of a cell that is not free: outside, if nobody claimed it.
-    fn known(self) -> Owner {
-        if self.owner == Owner::FREE { Owner::OUTSIDE } else { self.owner }
+        self.0 & 1 == 1 && self != Owner::CLOSED
     }
 }
 
@@ -57,12 +50,23 @@ struct Grid {
     wrap: usize,
 }
 
-/// What lies in a cell that is not free.
-#[derive(Clone, Copy, Debug)]
-struct Claim {
-    owner: Owner,
-    /// Where on its stem it lies, by arc length.
-    place: f32,
+/// What lies in a cell that is not free: its owner, and where on the stem it lies by arc length. Zeros
+/// if it is closed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Claim(u64);
+
+impl Claim {
+    fn new(owner: Owner, place: f64) -> Self {
+        Claim(u64::from(owner.0) << 32 | u64::from((place as f32).to_bits()))
+    }
+
+    fn owner(self) -> Owner {
+        if self.0 == 0 { Owner::CLOSED } else { Owner((self.0 >> 32) as u32) }
+    }
+
+    fn place(self) -> f64 {
+        f64::from(f32::from_bits(self.0 as u32))
+    }
 }
 
 /// The cells of a container.
@@ -74,8 +78,10 @@ pub(super) struct Cells {
     free: Bits,
     /// Inside, and no body there.
     open: Bits,
-    /// Of cells that are neither free nor outside, at `Grid::place`.
-    claims: Vec<Claim>,
+    inside: Bits,
+    /// The claim of cells that are not free, at `Grid::place`. As numbers, of which the system has
+    /// zeros at hand.
+    claims: Vec<u64>,
 }
 
 /// Claims of so many columns and rows lie together, as memory likes it.
@@ -263,12 +269,13 @@ impl Cells {
         }
         let grid = Grid { origin, size, per_unit: 1.0 / size, columns, rows, wrap };
         let tiles = columns.div_ceil(TILE) * rows.div_ceil(TILE);
-        let claims = vec![Claim { owner: Owner::FREE, place: 0.0 }; tiles * TILE * TILE];
-        let mut cells = Cells { grid, open: free.clone(), free, claims };
+        let claims = vec![0; tiles * TILE * TILE];
+        let mut cells = Cells { grid, open: free.clone(), inside: Bits::new(0, 0), free, claims };
         // What the edge passes near is outside for certain.
         for contour in region.contours() {
             cells.close_edge(contour);
         }
+        cells.inside = cells.free.clone();
         cells
     }
 
@@ -313,19 +320,53 @@ impl Cells {
         apart: f64,
         mut may: impl FnMut(Owner, f64) -> bool,
     ) -> bool {
-        self.grid.near(at, self.grid.reach(radius, apart), |run| match run {
-            None => may(Owner::OUTSIDE, 0.0),
-            Some(run) => self.free.each(run, false, |column| {
-                let claim = self.claims[self.grid.place(column, run.row)];
-                may(claim.known(), f64::from(claim.place))
-            }),
+        let reach = self.grid.reach(radius, apart);
+        self.is_box_free(at, reach)
+            || self.grid.near(at, reach, |run| match run {
+                None => may(Owner::CLOSED, 0.0),
+                Some(run) => self.free.each(run, false, |column| {
+                    let claim = Claim(self.claims[self.grid.place(column, run.row)]);
+                    may(claim.owner(), claim.place())
+                }),
+            })
+    }
+
+    /// True if all cells of the square around a disc are free, which most are that are asked for: no
+    /// root has to be drawn then.
+    #[inline(always)]
+    fn is_box_free(&self, at: Point, radius: f64) -> bool {
+        let Grid { origin, per_unit, .. } = self.grid;
+        let (x, y) = ((at.x - origin.x) * per_unit - 0.5, (at.y - origin.y) * per_unit - 0.5);
+        let r = radius * per_unit;
+        if x < r || y < r || x + r >= self.grid.columns as f64 || y + r >= self.grid.rows as f64 {
+            return false;
+        }
+        let (left, right) = ((x - r) as usize, (x + r) as usize);
+        let (top, bottom) = ((y - r) as usize, (y + r) as usize);
+        let (first, last) = (left / 64, right / 64);
+        if last > first + 1 {
+            return false;
+        }
+        let (low, high) = (mask(first, left, right), mask(last, left, right));
+        let Bits { words, per_row } = &self.free;
+        let mut missing = 0;
+        for row in top..bottom + 1 {
+            missing |= low & !words[row * per_row + first] | high & !words[row * per_row + last];
+        }
+        missing == 0
+    }
+
+    /// True if a disc lies in the region, whatever else is there.
+    pub fn is_inside(&self, at: Point, radius: f64) -> bool {
+        self.grid.near(at, self.grid.reach(radius, 0.0), |run| {
+            run.is_some_and(|run| self.inside.each(run, false, |_| false))
         })
     }
 
-    /// Claims a disc for a thing; `place` is the arc length there.
-    pub fn claim(&mut self, id: u32, at: Point, radius: f64, apart: f64, place: f64) {
-        let Cells { grid, free, open, claims } = self;
-        let claim = Claim { owner: Owner::of(id, true), place: place as f32 };
+    /// Claims a disc for a stem; `place` is the arc length there.
+    pub fn claim(&mut self, stem: usize, at: Point, radius: f64, apart: f64, place: f64) {
+        let Cells { grid, free, open, claims, .. } = self;
+        let Claim(claim) = Claim::new(Owner::of(stem, true), place);
         grid.near(at, grid.reach(radius, apart), |run| {
             if let Some(run) = run {
                 open.each(run, true, |column| {
@@ -340,15 +381,45 @@ impl Cells {
     }
 
     /// Claims the gap around a disc: what others have there is theirs already.
-    pub fn claim_gap(&mut self, id: u32, at: Point, radius: f64, apart: f64, place: f64) {
+    pub fn claim_gap(&mut self, stem: usize, at: Point, radius: f64, apart: f64, place: f64) {
         let Cells { grid, free, claims, .. } = self;
-        let claim = Claim { owner: Owner::of(id, false), place: place as f32 };
+        let Claim(claim) = Claim::new(Owner::of(stem, false), place);
         grid.near(at, grid.reach(radius, apart), |run| {
             if let Some(run) = run {
                 free.each(run, true, |column| {
                     claims[grid.place(column, run.row)] = claim;
                     true
                 });
+                free.clear(run);
+            }
+            true
+        });
+    }
+
+    /// Closes a disc that clip art covers.
+    pub fn close(&mut self, at: Point, apart: f64) {
+        let Cells { grid, free, open, claims, .. } = self;
+        grid.near(at, grid.reach(0.0, apart), |run| {
+            if let Some(run) = run {
+                // What is free has no claim.
+                free.each(run, false, |column| {
+                    if open.get(column, run.row) {
+                        claims[grid.place(column, run.row)] = 0;
+                    }
+                    true
+                });
+                open.clear(run);
+                free.clear(run);
+            }
+            true
+        });
+    }
+
+    /// Closes the gap around it: what stems have there is theirs already.
+    pub fn close_gap(&mut self, at: Point, radius: f64, apart: f64) {
+        let Cells { grid, free, .. } = self;
+        grid.near(at, grid.reach(radius, apart), |run| {
+            if let Some(run) = run {
                 free.clear(run);
             }
             true
@@ -372,7 +443,13 @@ impl Cells {
                 true
             });
         }
-        Cells { grid: self.grid, open: free.clone(), free, claims: self.claims.clone() }
+        Cells {
+            grid: self.grid,
+            open: free.clone(),
+            inside: self.inside.clone(),
+            free,
+            claims: self.claims.clone(),
+        }
     }
 
     /// True if nobody claims a place.
@@ -384,9 +461,9 @@ impl Cells {
     /// Who claims a place.
     pub fn owner(&self, at: Point) -> Owner {
         match self.grid.cell(at) {
-            None => Owner::OUTSIDE,
+            None => Owner::CLOSED,
             Some((column, row)) if self.free.get(column, row) => Owner::FREE,
-            Some((column, row)) => self.claims[self.grid.place(column, row)].known(),
+            Some((column, row)) => Claim(self.claims[self.grid.place(column, row)]).owner(),
         }
     }
 

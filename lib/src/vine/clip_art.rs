@@ -99,17 +99,14 @@ impl Art {
         let radius = silhouette.lines.iter().flatten().map(|p| p.to_vec2().hypot()).fold(0.0, f64::max);
         let around: Vec<(Point, f64)> =
             silhouette.outline(2.0 * APART).into_iter().map(|p| (p, 2.0 * APART)).collect();
-        let mut outline = silhouette.outline(APART);
-        // What is farthest from the stem meets others first.
-        outline.sort_by(|p, q| q.to_vec2().hypot2().total_cmp(&p.to_vec2().hypot2()));
-        let outline = outline.into_iter().map(|p| (p, APART));
+        let outline = silhouette.outline(APART).into_iter().map(|p| (p, APART));
         let inside: Vec<(Point, f64)> = silhouette.inside().into_iter().map(|p| (p, 0.9 * INSIDE)).collect();
         Art {
             id,
             builtin,
             names,
             radius,
-            samples: outline.chain(inside.iter().copied()).collect(),
+            samples: spread(outline.chain(inside.iter().copied()).collect()),
             inside,
             around,
             back: silhouette.back(),
@@ -132,23 +129,50 @@ impl Art {
         })
     }
 
-    /// Claims what it covers.
-    pub fn claim(&self, pose: Affine, size: f64, cells: &mut Cells, id: u32, gap: f64) {
+    /// Closes what it covers.
+    pub fn close(&self, pose: Affine, size: f64, cells: &mut Cells, gap: f64) {
         // Near where it is attached it lies over the gap of its stem, which allows too much.
         const BASE: f64 = 0.5;
         for &(p, apart) in &self.samples {
             if self.central || p.to_vec2().hypot2() < BASE * BASE {
-                cells.claim(id, pose * p, 0.0, apart * size, 0.0);
+                cells.close(pose * p, apart * size);
             }
         }
         // The gap is wide against the samples of the outline: some of them are enough.
         for &(p, apart) in &self.around {
-            cells.claim_gap(id, pose * p, gap, apart * size, 0.0);
+            cells.close_gap(pose * p, gap, apart * size);
         }
         for &(p, apart) in &self.inside {
-            cells.claim_gap(id, pose * p, 0.0, apart * size, 0.0);
+            cells.close_gap(pose * p, 0.0, apart * size);
         }
     }
+}
+
+/// Samples in an order that meets whatever is there early: each as far as can be from all before.
+fn spread(mut samples: Vec<(Point, f64)>) -> Vec<(Point, f64)> {
+    /// To sort more would take longer than it saves.
+    const MOST: usize = 2000;
+    if samples.len() > MOST {
+        return samples;
+    }
+    let mut nearest = vec![f64::INFINITY; samples.len()];
+    // What is farthest from the stem meets others first.
+    let far = |p: Point| p.to_vec2().hypot2();
+    let first = (0..samples.len()).max_by(|&i, &j| far(samples[i].0).total_cmp(&far(samples[j].0)));
+    let mut next = first.unwrap_or(0);
+    for i in 0..samples.len() {
+        samples.swap(i, next);
+        nearest.swap(i, next);
+        let at = samples[i].0;
+        next = i + 1;
+        for j in i + 1..samples.len() {
+            nearest[j] = nearest[j].min(samples[j].0.distance_squared(at));
+            if nearest[j] > nearest[next] {
+                next = j;
+            }
+        }
+    }
+    samples
 }
 
 /// What an element may be called: its families, kind, symbol and id.

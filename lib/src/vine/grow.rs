@@ -24,7 +24,7 @@ use super::plait::{self, Crossing};
 use super::stem::{Stem, Taper};
 use crate::geom::near::point_segment;
 use crate::rng::Rng;
-use kurbo::{Point, Vec2};
+use kurbo::{Point, Rect, Vec2};
 use std::collections::BinaryHeap;
 
 /// A curl ends where its width times its curvature is more than this.
@@ -51,11 +51,9 @@ pub(super) struct Plant<'a> {
     forms: Vec<Form>,
     charge: &'a Charge,
     pub stems: Vec<Stem>,
+    /// The box around what each stem claims.
+    boxes: Vec<Rect>,
     pub arts: Vec<PlacedArt>,
-    /// How many things claim cells: the next one's id.
-    things: u32,
-    /// Id of each stem.
-    ids: Vec<u32>,
     /// Where branches cross.
     pub crossings: Vec<Crossing>,
     /// Where clip art is attached to each stem: the arc length there, and its size.
@@ -139,9 +137,8 @@ impl<'a> Plant<'a> {
             forms: (0..params.levels).map(form).collect(),
             charge,
             stems: Vec::new(),
+            boxes: Vec::new(),
             arts: Vec::new(),
-            things: 0,
-            ids: Vec::new(),
             crossings: Vec::new(),
             attached: Vec::new(),
             grown: 0,
@@ -156,9 +153,6 @@ impl<'a> Plant<'a> {
     /// Adds a stem that is known to fit.
     pub fn add(&mut self, mut stem: Stem) -> usize {
         let index = self.stems.len();
-        let id = self.things;
-        self.things += 1;
-        self.ids.push(id);
         self.attached.push(Vec::new());
         // A curl ends where it gets tighter than it is wide.
         let tight = stem.nodes.iter().find(|node| node.curvature.abs() * stem.width(node.s) > TIGHT);
@@ -167,11 +161,15 @@ impl<'a> Plant<'a> {
         // Discs may be as far apart as they are large: `apart` makes up for it.
         let width = stem.width(0.5 * stem.end);
         for disc in discs(&stem, self.cells.size().max(0.4 * width)) {
-            self.cells.claim(id, disc.at, disc.radius, disc.apart, disc.s);
+            self.cells.claim(index, disc.at, disc.radius, disc.apart, disc.s);
         }
         for disc in discs(&stem, self.cells.size().max(0.4 * width + 0.6 * gap)) {
-            self.cells.claim_gap(id, disc.at, disc.radius + gap, disc.apart, disc.s);
+            self.cells.claim_gap(index, disc.at, disc.radius + gap, disc.apart, disc.s);
         }
+        let first = Rect::from_points(stem.nodes[0].p, stem.nodes[0].p);
+        let claimed = width.max(stem.taper.start) + gap + 2.0 * self.cells.size();
+        self.boxes
+            .push(stem.nodes.iter().fold(first, |all, node| all.union_pt(node.p)).inflate(claimed, claimed));
         self.stems.push(stem);
         index
     }
@@ -408,7 +406,7 @@ impl<'a> Plant<'a> {
     /// Where a branch of some length leaves its parent.
     fn fork(&self, site: &Site, length: f64) -> Fork {
         let near = 5.0 * (self.stems[site.parent].width(site.s) + self.sizes.gap);
-        Fork { id: self.ids[site.parent], s: site.s, reach: near.max(0.3 * length) }
+        Fork { stem: site.parent, s: site.s, reach: near.max(0.3 * length) }
     }
 
     /// A look at a few places on the centre line, from the far side: most of what does not fit
@@ -422,8 +420,12 @@ impl<'a> Plant<'a> {
             if self.cells.is_free(at) {
                 return false;
             }
+            // Who else it is does not matter, and takes longer to know.
+            if !self.params.plait && self.period.is_none() && !self.boxes[fork.stem].contains(at) {
+                return true;
+            }
             let owner = self.cells.owner(at);
-            owner.id() != Some(fork.id) && !(self.params.plait && owner != Owner::OUTSIDE)
+            owner.stem() != Some(fork.stem) && !(self.params.plait && owner != Owner::CLOSED)
         })
     }
 
@@ -443,7 +445,7 @@ impl<'a> Plant<'a> {
         // Stronger near walls, so that what comes near turns away (M-039).
         const BETA: f64 = 1.2;
         let reach = 3.0 * self.sizes.width;
-        let near = |r: f64| !self.cells.allows(at, r, 0.0, |owner, _| owner != Owner::OUTSIDE);
+        let near = |r: f64| !self.cells.is_inside(at, r);
         let distance = (1..=4).map(|k| f64::from(k) * reach / 2.0).find(|&r| near(r)).unwrap_or(4.0 * reach);
         1.0 + BETA * libm::exp(-distance / reach)
     }
@@ -492,16 +494,17 @@ impl<'a> Plant<'a> {
         let nearby = 4.0 * (half + self.sizes.width + self.sizes.gap);
         let was_at = way.met.last().filter(|_| way.crossing).map(|met| met.place);
         let free = self.cells.allows(node.p, half, node.s - way.before, |owner, place| {
-            if let Some(fork) = fork.filter(|fork| !left && owner.id() == Some(fork.id)) {
+            if let Some(fork) = fork.filter(|fork| !left && owner.stem() == Some(fork.stem)) {
                 at_parent = true;
                 return (place - fork.s).abs() <= fork.reach && node.s <= fork.reach;
             }
-            let other = owner.id().filter(|_| self.params.plait && left);
+            let other = owner.stem().filter(|_| self.params.plait && left);
             let same = other.is_some()
-                && at_other
-                    .is_none_or(|(id, at): (u32, f64)| Some(id) == other && (at - place).abs() < nearby)
+                && at_other.is_none_or(|(stem, at): (usize, f64)| {
+                    Some(stem) == other && (at - place).abs() < nearby
+                })
                 && was_at.is_none_or(|at| (at - place).abs() < nearby);
-            at_other = at_other.or(other.map(|id| (id, place)));
+            at_other = at_other.or(other.map(|stem| (stem, place)));
             same
         });
         if !free {
@@ -510,11 +513,10 @@ impl<'a> Plant<'a> {
         way.left |= !at_parent;
         way.before = node.s;
         let was_crossing = std::mem::replace(&mut way.crossing, at_other.is_some());
-        let Some((id, place)) = at_other else {
+        let Some((stem, place)) = at_other else {
             // It has to come out on the other side.
             return !was_crossing || way.met.last().is_none_or(|met| met.before * met.after < 0.0);
         };
-        let Some(stem) = self.ids.iter().position(|&own| own == id) else { return false };
         let last = way.met.last_mut().filter(|_| was_crossing);
         if !self.is_crossed(stem, place, node, (node.s, length), last.as_deref()) {
             return false;
@@ -649,7 +651,7 @@ pub(super) struct Met {
 /// Where a branch leaves its parent: near there it may touch it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fork {
-    pub id: u32,
+    pub stem: usize,
     pub s: f64,
     pub reach: f64,
 }

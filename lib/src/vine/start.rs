@@ -6,7 +6,7 @@
 //! particles are tried, from different places with different periods; the one that comes near
 //! the largest part of the shape, without coming near itself, is taken. It ends in a curl.
 
-use super::cells::{Cells, Owner};
+use super::cells::Cells;
 use super::grow::{Plant, Pose};
 use super::particle::{Node, unit};
 use super::stem::{Stem, Taper};
@@ -417,10 +417,9 @@ pub(super) fn width_of_parent(stems: &[Stem], stem: &Stem) -> Option<f64> {
     })
 }
 
-/// The longest part of a stem that lies in free cells. `None` if nothing of it does.
+/// The longest part of a stem that lies in the region. `None` if nothing of it does.
 pub(super) fn part_inside(cells: &Cells, stem: &Stem) -> Option<Stem> {
-    let is_inside =
-        |node: &Node| cells.allows(node.p, stem.width(node.s) / 2.0, 0.0, |owner, _| owner != Owner::OUTSIDE);
+    let is_inside = |node: &Node| cells.is_inside(node.p, stem.width(node.s) / 2.0);
     let mut best: Option<(f64, f64)> = None;
     for run in stem.nodes.chunk_by(|a, b| is_inside(a) == is_inside(b)) {
         let (from, to) = (run[0].s, run[run.len() - 1].s);

@@ -36,7 +36,6 @@ impl Plant<'_> {
         let mut rng = self.rng.fork();
         let Some(art) = pick(&self.tips[level], &mut rng) else { return };
         let full = self.stems[stem].end;
-        let id = self.ids[stem];
         // A flower much smaller than its fellows is dust; a bare curl is better.
         let smallest = 0.48 * self.art_size(level);
         let largest = self.art_size(level).min(0.34 * full);
@@ -68,7 +67,7 @@ impl Plant<'_> {
                 let width = self.stems[stem].width(end) + self.sizes.gap + 2.0 * self.cells.size();
                 let own = self.own_end(stem, end, tip.p, radius) - 2.0 * width;
                 let may = |at: Point, owner: Owner, place: f64| {
-                    owner.id() == Some(id)
+                    owner.stem() == Some(stem)
                         && place >= own
                         && (central || at.distance(tip.p) < 1.5 * width || place > end)
                 };
@@ -115,7 +114,7 @@ impl Plant<'_> {
         let Some(art) = pick(&self.forks[level], &mut rng) else { return };
         let size = self.art_size(level).min(0.4 * self.stems[branch].length());
         let beside = self.beside(site.parent, site.s, -site.side);
-        self.place_beside(&beside, art, (size, 0.5), Some(self.ids[branch]));
+        self.place_beside(&beside, art, (size, 0.5), Some(branch));
     }
 
     /// Leaves in the room that is left along the stems, the largest first.
@@ -196,12 +195,13 @@ impl Plant<'_> {
         Beside { stem, node: parent.at(s), width: parent.width(s), side }
     }
 
-    /// True if the middle of something of this size beside a stem is free, some way it may lean.
+    /// True if the middle and the end of something of this size beside a stem are free, some way it may
+    /// lean.
     fn may_hold(&self, site: &Beside, size: f64) -> bool {
         let edge = site.node.p + site.side * 0.5 * site.width * left_of(site.node.along);
         self.leans.into_iter().any(|lean| {
             let along = leant(site.node.along, lean, site.side);
-            self.cells.is_free(edge + 0.75 * size * along)
+            [0.75, 1.0].into_iter().all(|share| self.cells.is_free(edge + share * size * along))
         })
     }
 
@@ -211,9 +211,8 @@ impl Plant<'_> {
         &Beside { stem, node, width, side }: &Beside,
         art: usize,
         (size, least): (f64, f64),
-        branch: Option<u32>,
+        branch: Option<usize>,
     ) -> bool {
-        let id = self.ids[stem];
         let near = width + self.sizes.gap + 2.0 * self.cells.size();
         let mut scale = 1.0;
         while scale >= least {
@@ -235,8 +234,8 @@ impl Plant<'_> {
                 let pose = posed(origin, along, size, side < 0.0);
                 let may = |at: Point, owner: Owner, place: f64| {
                     let distance = at.distance(attached);
-                    let own = owner.id() == Some(id) && (place - node.s).abs() < 0.5 * size + 2.0 * near;
-                    let sibling = branch.is_some() && owner.id() == branch;
+                    let own = owner.stem() == Some(stem) && (place - node.s).abs() < 0.5 * size + 2.0 * near;
+                    let sibling = branch.is_some() && owner.stem() == branch;
                     (own && (distance < base || !owner.is_body()) && distance < 3.0 * near)
                         || (sibling && !owner.is_body() && distance < near)
                 };
@@ -252,9 +251,7 @@ impl Plant<'_> {
     }
 
     fn place(&mut self, art: usize, pose: Affine, size: f64) {
-        let id = self.things;
-        self.things += 1;
-        self.library.arts[art].claim(pose, size, &mut self.cells, id, self.sizes.gap);
+        self.library.arts[art].close(pose, size, &mut self.cells, self.sizes.gap);
         self.arts.push(PlacedArt { art, pose, size });
     }
 }
