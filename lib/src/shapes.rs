@@ -105,7 +105,8 @@ impl Shapes {
         (frame.x0, frame.width())
     }
 
-    fn free_in(&self, shape: &[Contour], gap: f64, edge: f64) -> Option<Region> {
+    /// The same in any shape.
+    pub fn free_in(&self, shape: &[Contour], gap: f64, edge: f64) -> Option<Region> {
         // Chords may lie on the wrong side of a curve by the tolerance.
         let distance = (gap - edge).max(0.0) + self.tolerance;
         let clear = boolean::offset(&near(&self.fixed, shape, gap), distance);

@@ -219,7 +219,7 @@ mod refused {
         let small = format!("{}<rect class='rinceau-container' width='9' height='9'/>", bricks(5, 6));
         insta::assert_snapshot!(refusal(&small, &[]), @"rinceau: No element of the example fits into the shape. Make the shape larger, draw the example smaller, or let elements cross the outline. [nothing-fits]");
         let vast = format!("{}<rect class='rinceau-container' width='90000' height='90000'/>", bricks(5, 6));
-        insta::assert_snapshot!(refusal(&vast, &[]), @"rinceau: The shape would take about 7536107 elements, more than 200000. Draw the example larger, or give a number of elements. [too-many-elements]");
+        insta::assert_snapshot!(refusal(&vast, &[]), @"rinceau: The shape would take about 7539182 elements, more than 200000. Draw the example larger, or give a number of elements. [too-many-elements]");
     }
 
     /// A symbol that only occurs on the border is grown from no one; the others go on.

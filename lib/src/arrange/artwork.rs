@@ -1,14 +1,15 @@
 //! Elements in their places to an artwork.
 
 use super::example::Analysis;
-use super::grow::{Arrangement, Object};
+use super::ground::Ground;
+use super::grow::Arrangement;
 use super::params::Params;
+use super::relax;
 use crate::geom::boolean;
-use crate::geom::flatten::flatten;
 use crate::geom::region::Region;
 use crate::rng::Rng;
 use crate::shapes::Shapes;
-use kurbo::{Affine, BezPath, Point, Vec2};
+use kurbo::{Affine, BezPath, Point, Rect, Vec2};
 use rinceau_format::{Error, Example, Group, Item, Part, Reference, Scene, Style, Symbol, rgb};
 use std::collections::BTreeMap;
 
@@ -16,18 +17,37 @@ use std::collections::BTreeMap;
 pub(super) struct Outline {
     whole: Region,
     free: Region,
+    /// What repeats, if it does.
+    pub tile: Option<Rect>,
 }
 
 impl Outline {
     /// `None` if nothing is free.
     pub fn new(shapes: &Shapes, index: usize, gap: f64) -> Option<Self> {
         let whole = Region::new(shapes.containers[index].clone())?;
-        Some(Outline { whole, free: shapes.free(index, gap, gap)? })
+        // What lies on the outline is inside, as far as anyone can see.
+        let edge = if gap == 0.0 { -1.02 * shapes.tolerance } else { gap };
+        Some(Outline { whole, free: shapes.free(index, gap, edge)?, tile: None })
+    }
+
+    /// The box around a container, which repeats to all sides. `None` if nothing is free.
+    pub fn tile(shapes: &Shapes, index: usize, gap: f64) -> Option<Self> {
+        let tile = shapes.frame(index);
+        let (width, height) = (tile.width(), tile.height());
+        let Rect { x0, y0, x1, y1 } = tile.inflate(2.0 * width, 2.0 * height);
+        let around =
+            vec![vec![Point::new(x0, y0), Point::new(x1, y0), Point::new(x1, y1), Point::new(x0, y1)]];
+        let free = shapes.free_in(&around, gap, 0.0)?;
+        (width > 0.0 && height > 0.0).then_some(Outline {
+            whole: Region::new(around)?,
+            free,
+            tile: Some(tile),
+        })
     }
 
     /// Where the middles of elements may be.
     pub fn middles(&self, edge: &str, example: &Analysis) -> Region {
-        if edge != "over" {
+        if edge != "over" || self.tile.is_some() {
             return self.free.clone();
         }
         let half = example.elements.iter().map(|element| 0.5 * element.bounds.size().max_side());
@@ -91,7 +111,7 @@ impl Drawing {
     pub fn add(
         &mut self,
         arrangement: &Arrangement,
-        (example, reference): (&Analysis, &Reference),
+        (example, reference, ground): (&Analysis, &Reference, &Ground),
         outline: Option<&Outline>,
         (params, rng): (&Params, &mut Rng),
     ) -> Result<(), Error> {
@@ -105,102 +125,102 @@ impl Drawing {
         }
         let drawn: Vec<&Example> =
             example.elements.iter().map(|element| &reference.examples[element.index]).collect();
-        let hulls: Vec<Vec<Vec2>> = drawn
-            .iter()
-            .zip(&example.elements)
-            .map(|(one, element)| hull(one, element.at, example.mean))
-            .collect();
         let mut symbols: BTreeMap<usize, usize> = BTreeMap::new();
         let mut placed: Vec<(f64, Item)> = Vec::new();
-        let order = order(params, example);
+        let order = order(arrangement, example, ground, params);
         for (number, &index) in arrangement.grown.iter().enumerate() {
             let object = &arrangement.objects[index as usize];
             let Some((copy, turn)) = object.copy else { continue };
             // Drawn from the same numbers whatever else is left out.
             let mut own = rng.fork();
-            let pose = pose(object, turn, example.elements[copy].at, params, &mut own);
-            if let Some(outline) = outline {
-                let points: Vec<Point> =
-                    hulls[copy].iter().map(|&v| pose * (example.elements[copy].at + v)).collect();
-                let radius = points.iter().map(|p| p.distance(object.at)).fold(0.0, f64::max);
-                if !outline.shows(&params.edge, object.at, &points, radius) {
+            let varied = varied(turn, params, &mut own);
+            let tone = params.vary_tone * own.between(-1.0, 1.0);
+            let element = &example.elements[copy];
+            let points = || element.extent.points.iter().map(|v| varied * v.to_point()).map(Point::to_vec2);
+            let radius = points().map(|v| v.hypot()).fold(0.0, f64::max);
+            let of = drawn[copy].source.id.clone();
+            for at in ground.images(object.at, radius) {
+                let hull: Vec<Point> = points().map(|v| at + v).collect();
+                if outline.is_some_and(|outline| !outline.shows(&params.edge, at, &hull, radius))
+                    || params.edge == "inside" && ground.is_cut(&hull)
+                {
                     continue;
                 }
+                let pose =
+                    Affine::translate(at.to_vec2()) * varied * Affine::translate(-element.at.to_vec2());
+                let item = if has_clones {
+                    let symbol = *symbols.entry(copy).or_insert_with(|| {
+                        let name = format!("{of}{}", self.symbols.len() + 1);
+                        self.symbols.push(Symbol::new(name, drawn[copy].parts.clone()));
+                        self.symbols.len() - 1
+                    });
+                    Item::cloned(of.clone(), symbol, pose)
+                } else {
+                    Item::new(
+                        of.clone(),
+                        drawn[copy].parts.iter().map(|part| copied(part, pose, tone)).collect(),
+                    )
+                };
+                placed.push((order[number], item));
             }
-            let of = drawn[copy].source.id.clone();
-            let item = if has_clones {
-                let symbol = *symbols.entry(copy).or_insert_with(|| {
-                    let name = format!("{of}{}", self.symbols.len() + 1);
-                    self.symbols.push(Symbol::new(name, drawn[copy].parts.clone()));
-                    self.symbols.len() - 1
-                });
-                Item::cloned(of, symbol, pose)
-            } else {
-                let tone = params.vary_tone * own.between(-1.0, 1.0);
-                Item::new(of, drawn[copy].parts.iter().map(|part| copied(part, pose, tone)).collect())
-            };
-            let key = order.map_or(number as f64, |way| way.dot(object.at.to_vec2()));
-            placed.push((key, item));
         }
         placed.sort_by(|a, b| a.0.total_cmp(&b.0));
         self.elements.items.extend(placed.into_iter().map(|(_, item)| item));
-        self.connectivity.items.extend(connectivity(arrangement, example.mean));
+        self.connectivity.items.extend(connectivity(arrangement, ground, example.mean));
         Ok(())
     }
 }
 
-/// Points on the outline of an element, from its middle.
-fn hull(one: &Example, at: Point, mean: f64) -> Vec<Vec2> {
-    /// So true are chords, in mean edges; what is between points may bulge by as much again.
-    const TOLERANCE: f64 = 0.002;
-    const MOST: usize = 200;
-    let lines =
-        one.parts.iter().flat_map(|part| flatten(&(part.transform * part.path.clone()), TOLERANCE * mean));
-    let points: Vec<Point> = lines.flat_map(|line| line.points).collect();
-    // Evenly many, and those that lie farthest out in eight directions.
-    let step = points.len().div_ceil(MOST).max(1);
-    let mut hull: Vec<Vec2> = points.iter().step_by(step).map(|&p| p - at).collect();
-    for way in [(1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (-1.0, 1.0)].map(|(x, y)| Vec2::new(x, y)) {
-        let along = |p: &&Point| way.dot(**p - at);
-        hull.extend(points.iter().max_by(|a, b| along(a).total_cmp(&along(b))).map(|&p| p - at));
-        hull.extend(points.iter().min_by(|a, b| along(a).total_cmp(&along(b))).map(|&p| p - at));
-    }
-    for v in &mut hull {
-        *v *= 1.0 + 3.0 * TOLERANCE * mean / v.hypot().max(TOLERANCE * mean);
-    }
-    hull
-}
-
-/// From an element of the example to a place, with its own variations.
-fn pose(object: &Object, turn: Vec2, from: Point, params: &Params, rng: &mut Rng) -> Affine {
+/// How an element of the example is turned, with its own variations.
+fn varied(turn: Vec2, params: &Params, rng: &mut Rng) -> Affine {
     let size = 1.0 + params.vary_size * rng.between(-1.0, 1.0);
     let angle = params.vary_turn.to_radians() * rng.between(-1.0, 1.0);
-    let turned = Affine::new([turn.x, turn.y, -turn.y, turn.x, 0.0, 0.0]);
-    let varied = Affine::new([
-        size * libm::cos(angle),
-        size * libm::sin(angle),
-        -size * libm::sin(angle),
-        size * libm::cos(angle),
-        0.0,
-        0.0,
-    ]);
-    Affine::translate(object.at.to_vec2()) * turned * varied * Affine::translate(-from.to_vec2())
+    let turned = |v: Vec2| Affine::new([v.x, v.y, -v.y, v.x, 0.0, 0.0]);
+    turned(turn) * turned(size * Vec2::new(libm::cos(angle), libm::sin(angle)))
 }
 
-/// Which way elements that lie over others lie: the direction in which the example was drawn.
-fn order(params: &Params, example: &Analysis) -> Option<Vec2> {
+/// Numbers by which elements lie over others, the least at the bottom.
+fn order(arrangement: &Arrangement, example: &Analysis, ground: &Ground, params: &Params) -> Vec<f64> {
+    let along = |way: Vec2| -> Vec<f64> {
+        let place = |&i: &u32| way.dot(arrangement.objects[i as usize].at.to_vec2());
+        arrangement.grown.iter().map(place).collect()
+    };
     match params.order.as_str() {
-        "rows" => Some(Vec2::new(1e-3, 1.0)),
-        "growth" => None,
-        _ => {
-            let n = example.elements.len() as f64;
-            let middle = example.elements.iter().fold(Vec2::ZERO, |sum, one| sum + one.at.to_vec2()) / n;
-            let way = example.elements.iter().enumerate().fold(Vec2::ZERO, |sum, (i, one)| {
-                sum + (i as f64 - 0.5 * (n - 1.0)) * (one.at.to_vec2() - middle)
-            });
-            (way.hypot() > 0.0).then(|| way / way.hypot())
+        "rows" => along(Vec2::new(1e-3, 1.0)),
+        "growth" => (0..arrangement.grown.len()).map(|i| i as f64).collect(),
+        // The direction in which the example was drawn, if it is the same everywhere.
+        _ if params.mode == "fixed" && !ground.repeats => along(drawn_along(example)),
+        _ => as_neighbours(arrangement),
+    }
+}
+
+fn drawn_along(example: &Analysis) -> Vec2 {
+    let n = example.elements.len() as f64;
+    let middle = example.elements.iter().fold(Vec2::ZERO, |sum, one| sum + one.at.to_vec2()) / n;
+    example
+        .elements
+        .iter()
+        .enumerate()
+        .fold(Vec2::ZERO, |sum, (i, one)| sum + (i as f64 - 0.5 * (n - 1.0)) * (one.at.to_vec2() - middle))
+}
+
+/// Each element over those neighbours that it lies over in the example, and under the others: heights
+/// that differ by one from neighbour to neighbour, as nearly as all of them can. So the overlap follows
+/// a flow around any bend.
+fn as_neighbours(arrangement: &Arrangement) -> Vec<f64> {
+    let mut terms: Vec<relax::Term> = Vec::new();
+    for &i in &arrangement.grown {
+        let object = &arrangement.objects[i as usize];
+        let Some((copy, _)) = object.copy else { continue };
+        for link in object.ring.iter().filter(|link| arrangement.objects[link.to as usize].copy.is_some()) {
+            let above = if link.element > copy { 1.0 } else { -1.0 };
+            terms.push((i, link.to, Vec2::new(above, 0.0)));
         }
     }
+    let mut fixed: Vec<bool> = vec![false; arrangement.objects.len()];
+    arrangement.starts.iter().for_each(|&start| fixed[start as usize] = true);
+    let heights = relax::solved(&terms, &fixed, relax::STEPS);
+    arrangement.grown.iter().map(|&i| heights[i as usize].x).collect()
 }
 
 fn copied(part: &Part, pose: Affine, tone: f64) -> Part {
@@ -224,7 +244,7 @@ fn toned(channel: u8, tone: f64) -> u8 {
 }
 
 /// The edges between elements, as lines.
-fn connectivity(arrangement: &Arrangement, mean: f64) -> Vec<Item> {
+fn connectivity(arrangement: &Arrangement, ground: &Ground, mean: f64) -> Vec<Item> {
     let mut style = Style::filled("none");
     style.set("stroke", "#ff0000");
     style.set("stroke-width", &format!("{:.4}", 0.02 * mean));
@@ -236,7 +256,7 @@ fn connectivity(arrangement: &Arrangement, mean: f64) -> Vec<Item> {
             let to = &arrangement.objects[other as usize];
             if to.copy.is_some() && other > index {
                 path.move_to(object.at);
-                path.line_to(to.at);
+                path.line_to(ground.near(to.at, object.at));
             }
         }
         if !path.is_empty() {

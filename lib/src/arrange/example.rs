@@ -1,6 +1,8 @@
 //! The example: which of its elements are neighbours, and how each one's neighbours stand around
 //! it (Ijiri et al. 2008, section 4; checklist E-002 to E-009).
 
+use super::extent::Extent;
+use super::ring::difference;
 use crate::geom::triangulate::delaunay;
 use kurbo::{Point, Rect, Shape, Vec2};
 use rinceau_format::{Error, Reference};
@@ -12,12 +14,16 @@ const SKEWED: f64 = 2.0 * std::f64::consts::FRAC_PI_3;
 const ROOM: f64 = 1.12;
 /// Elements of an example at most: each place is compared with all of them.
 pub(super) const MOST_EXAMPLES: usize = 2000;
+/// The rings of so many are compared with each other.
+const MOST_COMPARED: usize = 200;
 
 /// A neighbour in a ring.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Neighbour {
     /// From the element in the middle.
     pub offset: Vec2,
+    /// Which element it is.
+    pub element: usize,
     /// Index of its symbol.
     pub symbol: usize,
 }
@@ -29,6 +35,7 @@ pub(super) struct Element {
     pub index: usize,
     pub at: Point,
     pub bounds: Rect,
+    pub extent: Extent,
     pub symbol: usize,
     /// Its neighbours counter-clockwise; empty on the border, where some are missing.
     pub ring: Vec<Neighbour>,
@@ -46,6 +53,12 @@ pub(super) struct Analysis {
     /// Least distance between two of each pair of symbols, and the largest of these.
     apart: Vec<f64>,
     pub reach: f64,
+    /// How deep two of each pair of symbols lie in each other at most.
+    depths: Vec<f64>,
+    /// How much the rings of two elements differ.
+    differences: Vec<f32>,
+    /// Edges of the connectivity, each with the lesser index first.
+    pub edges: Vec<(usize, usize)>,
 }
 
 impl Analysis {
@@ -63,6 +76,7 @@ impl Analysis {
         }
         let mut symbols: Vec<String> = Vec::new();
         let mut elements: Vec<Element> = Vec::new();
+        let none = Extent::default();
         for (index, example) in reference.examples.iter().enumerate() {
             let boxes = example.parts.iter().map(|part| (part.transform * part.path.clone()).bounding_box());
             let Some(bounds) = boxes.reduce(|a, b| a.union(b)) else { continue };
@@ -79,7 +93,7 @@ impl Analysis {
                 symbols.push(example.symbol.clone());
                 symbols.len() - 1
             });
-            elements.push(Element { index, at, bounds, symbol, ring: Vec::new() });
+            elements.push(Element { index, at, bounds, extent: none.clone(), symbol, ring: Vec::new() });
         }
         let points: Vec<Point> = elements.iter().map(|element| element.at).collect();
         let mut triangles = delaunay(&points);
@@ -105,7 +119,11 @@ impl Analysis {
                 _ => None,
             });
             let mut ring: Vec<Neighbour> = around
-                .map(|other| Neighbour { offset: points[other] - centre, symbol: elements[other].symbol })
+                .map(|other| Neighbour {
+                    offset: points[other] - centre,
+                    element: other,
+                    symbol: elements[other].symbol,
+                })
                 .collect();
             ring.sort_by(|a, b| angle(a.offset).total_cmp(&angle(b.offset)));
             elements[index].ring = ring;
@@ -120,20 +138,44 @@ impl Analysis {
         let lengths = edges.iter().map(|&(a, b)| points[a].distance(points[b]));
         let mean = lengths.clone().sum::<f64>() / edges.len() as f64;
         let least = lengths.fold(f64::INFINITY, f64::min);
-        let n = symbols.len();
-        let mut apart = vec![f64::INFINITY; n * n];
-        for (i, a) in elements.iter().enumerate() {
-            for b in &elements[..i] {
-                for (s, t) in [(a.symbol, b.symbol), (b.symbol, a.symbol)] {
-                    // Rare ones may be far from each other in the example without meaning it.
-                    let room = ROOM * 0.5 * (a.bounds.size().max_side() + b.bounds.size().max_side());
-                    apart[s * n + t] = apart[s * n + t].min(a.at.distance(b.at)).min(room);
-                }
+        for element in &mut elements {
+            element.extent = Extent::new(&reference.examples[element.index], element.at, mean);
+        }
+        let (apart, depths) = spaces(&elements, symbols.len());
+        let reach = apart.iter().copied().fold(mean, f64::max);
+        let edges = edges.into_iter().collect();
+        let mut analysis =
+            Analysis { elements, symbols, mean, least, apart, reach, depths, differences: Vec::new(), edges };
+        analysis.compare();
+        Ok(analysis)
+    }
+
+    /// Compares the rings of all elements with each other.
+    fn compare(&mut self) {
+        let n = self.elements.len();
+        if n > MOST_COMPARED {
+            return;
+        }
+        let mut differences = vec![0.0; n * n];
+        for i in 0..n {
+            for j in 0..i {
+                let (a, b) = (&self.elements[i].ring, &self.elements[j].ring);
+                let difference = difference(a, b, self.mean) as f32;
+                differences[i * n + j] = difference;
+                differences[j * n + i] = difference;
             }
         }
-        apart.iter_mut().filter(|least| !least.is_finite()).for_each(|least| *least = 0.0);
-        let reach = apart.iter().copied().fold(mean, f64::max);
-        Ok(Analysis { elements, symbols, mean, least, apart, reach })
+        self.differences = differences;
+    }
+
+    /// How much the rings of two elements differ, in mean edges and symbols; 0 where one is not known.
+    pub fn difference(&self, a: usize, b: usize) -> f64 {
+        f64::from(self.differences.get(a * self.elements.len() + b).copied().unwrap_or(0.0))
+    }
+
+    /// How deep two elements of these symbols lie in each other at most.
+    pub fn deep(&self, a: usize, b: usize) -> f64 {
+        self.depths[a * self.symbols.len() + b]
     }
 
     /// Least distance between two symbols in the example.
@@ -141,10 +183,35 @@ impl Analysis {
         self.apart[a * self.symbols.len() + b]
     }
 
+    /// Middles of elements farther from each other than this do not touch.
+    pub fn widest(&self) -> f64 {
+        2.0 * self.elements.iter().map(|element| element.extent.radius()).fold(0.0, f64::max)
+    }
+
     /// Elements of the example with a whole ring.
     pub fn inner(&self) -> impl Iterator<Item = usize> {
         (0..self.elements.len()).filter(|&i| !self.elements[i].ring.is_empty())
     }
+}
+
+/// Least distances between symbols, and how deep they lie in each other.
+fn spaces(elements: &[Element], n: usize) -> (Vec<f64>, Vec<f64>) {
+    let (mut apart, mut depths) = (vec![f64::INFINITY; n * n], vec![0.0; n * n]);
+    let straight = Vec2::new(1.0, 0.0);
+    for (i, a) in elements.iter().enumerate() {
+        for b in &elements[..i] {
+            // Rare ones may be far from each other in the example without meaning it.
+            let room = ROOM * 0.5 * (a.bounds.size().max_side() + b.bounds.size().max_side());
+            let deep =
+                a.extent.depth(straight, (&b.extent, straight), b.at - a.at, 0.0).map_or(0.0, |deep| deep.0);
+            for pair in [a.symbol * n + b.symbol, b.symbol * n + a.symbol] {
+                apart[pair] = apart[pair].min(a.at.distance(b.at)).min(room);
+                depths[pair] = f64::max(depths[pair], deep);
+            }
+        }
+    }
+    apart.iter_mut().filter(|least| !least.is_finite()).for_each(|least| *least = 0.0);
+    (apart, depths)
 }
 
 pub(super) fn angle(v: Vec2) -> f64 {

@@ -15,6 +15,8 @@ pub(super) struct Ground {
     guides: Vec<Vec<Point>>,
     boundaries: Option<SegmentGrid>,
     pub bounds: Rect,
+    /// True if what leaves the bounds on one side comes in on the other (a torus).
+    pub repeats: bool,
 }
 
 impl Ground {
@@ -23,7 +25,7 @@ impl Ground {
         bounds: Rect,
         (guides, with_flow): (Vec<Vec<Point>>, bool),
         boundaries: &[Vec<Point>],
-        cell: f64,
+        (cell, repeats): (f64, bool),
     ) -> Self {
         let whole = || {
             Region::new(vec![vec![
@@ -39,7 +41,45 @@ impl Ground {
         let mut walls = SegmentGrid::new(bounds, cell);
         boundaries.iter().flat_map(|line| line.windows(2)).for_each(|pair| walls.insert(pair[0], pair[1], 0));
         let boundaries = (!boundaries.is_empty()).then_some(walls);
-        Ground { middles, flow, guides, boundaries, bounds }
+        Ground { middles, flow, guides, boundaries, bounds, repeats }
+    }
+
+    /// The image of a place within the bounds.
+    pub fn within(&self, at: Point) -> Point {
+        if !self.repeats {
+            return at;
+        }
+        let Rect { x0, y0, .. } = self.bounds;
+        let (width, height) = (self.bounds.width(), self.bounds.height());
+        Point::new(x0 + (at.x - x0).rem_euclid(width), y0 + (at.y - y0).rem_euclid(height))
+    }
+
+    /// The image of a place that is nearest to another.
+    pub fn near(&self, at: Point, to: Point) -> Point {
+        if !self.repeats {
+            return at;
+        }
+        let (width, height) = (self.bounds.width(), self.bounds.height());
+        let by =
+            Vec2::new(((to.x - at.x) / width).round() * width, ((to.y - at.y) / height).round() * height);
+        at + by
+    }
+
+    /// All images of a place that are nearer to the bounds than `reach`, itself first.
+    pub fn images(&self, at: Point, reach: f64) -> Vec<Point> {
+        if !self.repeats {
+            return vec![at];
+        }
+        let around = self.bounds.inflate(reach, reach);
+        let (width, height) = (self.bounds.width(), self.bounds.height());
+        let moves = (0..9).map(|i| Vec2::new(f64::from((i + 1) % 3 - 1), f64::from((i / 3 + 1) % 3 - 1)));
+        let all = moves.map(|by| at + Vec2::new(by.x * width, by.y * height));
+        all.enumerate().filter(|(i, p)| *i == 0 || around.contains(*p)).map(|(_, p)| p).collect()
+    }
+
+    /// True if a line crosses a boundary that was drawn.
+    pub fn is_cut(&self, line: &[Point]) -> bool {
+        self.boundaries.is_some() && line.windows(2).any(|pair| self.divides(pair[0], pair[1]))
     }
 
     /// True if the middle of an element may be in a place.

@@ -7,6 +7,7 @@
 
 use super::example::Analysis;
 use super::ground::Ground;
+use super::relax::ring_error;
 use super::ring::{Around, Match, Turn, Weights, best, rotated, sort_around};
 use crate::geom::near::{PointGrid, crosses};
 use crate::rng::Rng;
@@ -32,13 +33,22 @@ pub(super) struct Object {
     pub copy: Option<(usize, Vec2)>,
     pub edges: Vec<u32>,
     /// Where its neighbours should stand around it.
-    pub ring: Vec<(u32, Vec2)>,
+    pub ring: Vec<Link>,
     /// A seed that came to nothing.
     pub is_gone: bool,
     /// A seed that will have its turn.
     grows: bool,
     /// How often it has let others go first.
     waited: u32,
+}
+
+/// Where a neighbour should stand.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Link {
+    pub to: u32,
+    pub offset: Vec2,
+    /// The element that the example has there.
+    pub element: usize,
 }
 
 /// What the growth goes by.
@@ -77,6 +87,11 @@ impl Ord for Distance {
     }
 }
 
+fn empty_grid(ground: &Ground, example: &Analysis) -> PointGrid {
+    let margin = if ground.repeats { NEIGHBOURHOOD * example.mean } else { 0.0 };
+    PointGrid::new(ground.bounds.inflate(margin, margin), example.mean)
+}
+
 /// A growing arrangement.
 pub(super) struct Arrangement<'a> {
     example: &'a Analysis,
@@ -96,7 +111,7 @@ pub(super) struct Arrangement<'a> {
 impl<'a> Arrangement<'a> {
     pub fn new(example: &'a Analysis, ground: &'a Ground, rules: &'a Rules, rng: &mut Rng) -> Self {
         let uses = example.elements.iter().map(|_| rng.unit()).collect();
-        let grid = PointGrid::new(ground.bounds, example.mean);
+        let grid = empty_grid(ground, example);
         Arrangement {
             example,
             ground,
@@ -123,7 +138,19 @@ impl<'a> Arrangement<'a> {
         !self.grid.any_within(at, reach, |_, other| !self.objects[other as usize].is_gone)
     }
 
+    /// Where an object is, or its image is, near a place.
+    fn at(&self, object: u32, near: Point) -> Point {
+        self.ground.near(self.objects[object as usize].at, near)
+    }
+
+    fn enter(&mut self, at: Point, object: u32) {
+        for image in self.ground.images(at, NEIGHBOURHOOD * self.example.mean) {
+            self.grid.insert(image, object);
+        }
+    }
+
     fn add(&mut self, at: Point, symbol: Option<usize>) -> u32 {
+        let at = self.ground.within(at);
         let index = self.objects.len() as u32;
         self.objects.push(Object {
             at,
@@ -135,15 +162,18 @@ impl<'a> Arrangement<'a> {
             grows: false,
             waited: 0,
         });
-        self.grid.insert(at, index);
+        self.enter(at, index);
         index
     }
 
     /// The grid anew, after objects moved.
     pub fn moved(&mut self) {
-        self.grid = PointGrid::new(self.ground.bounds, self.example.mean);
-        for (i, object) in self.objects.iter().enumerate().filter(|(_, object)| !object.is_gone) {
-            self.grid.insert(object.at, i as u32);
+        self.grid = empty_grid(self.ground, self.example);
+        for i in 0..self.objects.len() {
+            if !self.objects[i].is_gone {
+                self.objects[i].at = self.ground.within(self.objects[i].at);
+                self.enter(self.objects[i].at, i as u32);
+            }
         }
     }
 
@@ -175,7 +205,7 @@ impl<'a> Arrangement<'a> {
     }
 
     fn distance(&self, at: Point) -> f64 {
-        let starts = self.starts.iter().map(|&start| self.objects[start as usize].at.distance(at));
+        let starts = self.starts.iter().map(|&start| self.at(start, at).distance(at));
         starts.fold(f64::INFINITY, f64::min)
     }
 
@@ -227,6 +257,7 @@ impl<'a> Arrangement<'a> {
         let offset = |i: usize| rotated(element.ring[(found.shift + i) % m].offset, found.turn);
         // The ring counter-clockwise: neighbours there are, then new ones.
         let mut members: Vec<Option<u32>> = around.iter().map(|&other| Some(other)).collect();
+        let origin = self.objects[seed as usize].at;
         members.resize(m, None);
         for i in around.len()..m {
             let symbol = element.ring[(found.shift + i) % m].symbol;
@@ -235,7 +266,9 @@ impl<'a> Arrangement<'a> {
         for (i, member) in members.iter().enumerate() {
             if let Some(other) = *member {
                 self.connect(seed, other);
-                self.objects[seed as usize].ring.push((other, offset(i)));
+                let of = element.ring[(found.shift + i) % m].element;
+                let link = Link { to: other, offset: offset(i), element: of };
+                self.objects[seed as usize].ring.push(link);
             }
         }
         for i in 0..m {
@@ -244,9 +277,79 @@ impl<'a> Arrangement<'a> {
                 && (i >= around.len() || j >= around.len())
                 && a != b
             {
-                self.close(seed, (a, b), (offset(j) - offset(i)).hypot());
+                self.close((seed, origin), (a, b), (offset(j) - offset(i)).hypot());
             }
         }
+    }
+
+    /// A cure for errors that gather in places (E-062): where the ring of an element lost or gained
+    /// neighbours, or does not fit them, or one of them is a copy of the same element, another element
+    /// of the same symbol that fits better takes its place. How many did.
+    pub fn mend(&mut self) -> usize {
+        /// Rings that are nearer to the example's than this, in mean edges, are well.
+        const WELL: f64 = 0.06;
+        let mut mended = 0;
+        for number in 0..self.grown.len() {
+            let index = self.grown[number];
+            let object = &self.objects[index as usize];
+            let Some((copy, _)) = object.copy else { continue };
+            let is_whole = object.ring.len() == object.edges.len()
+                && object.ring.iter().all(|link| object.edges.contains(&link.to));
+            let (sum, count) = ring_error(&self.objects, object, self.ground);
+            let present = (sum / count.max(1.0)).sqrt() / self.example.mean;
+            let copy_of = |i: u32| self.objects[i as usize].copy.map(|copy| copy.0);
+            let repeats = object.edges.iter().any(|&other| copy_of(other) == Some(copy));
+            if is_whole && present < WELL && !repeats {
+                continue;
+            }
+            let Some((around, found)) = self.fitting(index) else { continue };
+            let ring = &self.example.elements[found.element].ring;
+            // Only against repeats may some of its ring be missing.
+            if around.len() != object.edges.len()
+                || ring.len() != around.len() && !repeats
+                || is_whole && found.element == copy
+            {
+                continue;
+            }
+            let links: Vec<Link> = around
+                .iter()
+                .enumerate()
+                .map(|(i, &to)| {
+                    let own = &ring[(found.shift + i) % ring.len()];
+                    Link { to, offset: rotated(own.offset, found.turn), element: own.element }
+                })
+                .collect();
+            let mended_object = Object { ring: links, ..object.clone() };
+            let (sum, count) = ring_error(&self.objects, &mended_object, self.ground);
+            let better = (sum / count.max(1.0)).sqrt() / self.example.mean < 0.9 * present;
+            let is_new = around.iter().all(|&other| copy_of(other) != Some(found.element));
+            if is_whole && !(better || repeats && is_new) {
+                continue;
+            }
+            self.objects[index as usize] =
+                Object { copy: Some((found.element, found.turn)), ..mended_object };
+            mended += 1;
+        }
+        mended
+    }
+
+    /// Which objects are within so many steps of what has grown since some number of elements.
+    pub fn near_new(&self, since: usize, steps: usize) -> Vec<bool> {
+        let mut is_near = vec![false; self.objects.len()];
+        let mut front: Vec<u32> = self.grown[since.min(self.grown.len())..].to_vec();
+        front.iter().for_each(|&i| is_near[i as usize] = true);
+        for _ in 0..steps {
+            let mut next = Vec::new();
+            for &i in &front {
+                for &j in &self.objects[i as usize].edges {
+                    if !std::mem::replace(&mut is_near[j as usize], true) {
+                        next.push(j);
+                    }
+                }
+            }
+            front = next;
+        }
+        is_near
     }
 
     /// Neighbours of a seed counter-clockwise, and the element of the example that suits them best.
@@ -255,8 +358,11 @@ impl<'a> Arrangement<'a> {
         let mut neighbours: Vec<(u32, Around)> = Vec::with_capacity(8);
         for &other in &object.edges {
             let it = &self.objects[other as usize];
-            let around =
-                Around { offset: it.at - object.at, symbol: it.symbol, copy_of: it.copy.map(|copy| copy.0) };
+            let around = Around {
+                offset: self.at(other, object.at) - object.at,
+                symbol: it.symbol,
+                copy_of: it.copy.map(|copy| copy.0),
+            };
             neighbours.push((other, around));
         }
         let turn = match self.rules.mode {
@@ -302,7 +408,7 @@ impl<'a> Arrangement<'a> {
         let from = self.objects[seed as usize].at;
         let at = from + offset;
         if let Some(near) = self.nearest(seed, at, SHORT * self.example.least) {
-            let to = self.objects[near as usize].at;
+            let to = self.at(near, at);
             let is_linked = self.objects[seed as usize].edges.contains(&near);
             return (!members.contains(&Some(near)) && (is_linked || !self.collides((seed, near), from, to)))
                 .then_some(near);
@@ -316,7 +422,7 @@ impl<'a> Arrangement<'a> {
         let m = members.len();
         for (j, is_before) in [((i + m - 1) % m, true), ((i + 1) % m, false)] {
             let Some(other) = members[j] else { continue };
-            let beside = self.objects[other as usize].at - from;
+            let beside = self.at(other, from) - from;
             let between = |a: Vec2, b: Vec2| libm::atan2(a.cross(b), a.dot(b));
             let (actual, original) = match is_before {
                 true => (between(beside, offset), between(offset_of(j), offset)),
@@ -361,14 +467,13 @@ impl<'a> Arrangement<'a> {
 
     /// The edge between two neighbours of an element; where it is too long, a seed between them; and
     /// where something lies in the triangle, edges to that.
-    fn close(&mut self, centre: u32, (a, b): (u32, u32), original: f64) {
-        let (o, p, q) =
-            (self.objects[centre as usize].at, self.objects[a as usize].at, self.objects[b as usize].at);
+    fn close(&mut self, (centre, o): (u32, Point), (a, b): (u32, u32), original: f64) {
+        let (p, q) = (self.at(a, o), self.at(b, o));
         if self.objects[a as usize].edges.contains(&b) {
             return;
         }
         if self.collides((a, b), p, q) {
-            self.join_inside(centre, (a, b));
+            self.join_inside((centre, o), (a, p), (b, q));
             return;
         }
         if p.distance(q) > LONG * original && self.extra(centre, (a, b), (o, p, q)) {
@@ -403,21 +508,19 @@ impl<'a> Arrangement<'a> {
     }
 
     /// Joins what lies in a triangle to its corners (E-036).
-    fn join_inside(&mut self, centre: u32, (a, b): (u32, u32)) {
-        let [o, p, q] = [centre, a, b].map(|i| self.objects[i as usize].at);
+    fn join_inside(&mut self, (centre, o): (u32, Point), (a, p): (u32, Point), (b, q): (u32, Point)) {
         let reach = p.distance(q).max(o.distance(p)).max(o.distance(q));
         let side = |u: Point, v: Point, at: Point| (v - u).cross(at - u);
         let sense = side(o, p, q).signum();
-        let mut inside: Vec<u32> = Vec::new();
+        let mut inside: Vec<(u32, Point)> = Vec::new();
         self.grid.visit(o, reach, |at, other| {
             let is_inside = [(o, p), (p, q), (q, o)].into_iter().all(|(u, v)| side(u, v, at) * sense > 0.0);
             if is_inside && !self.objects[other as usize].is_gone && ![centre, a, b].contains(&other) {
-                inside.push(other);
+                inside.push((other, at));
             }
             true
         });
-        for other in inside {
-            let at = self.objects[other as usize].at;
+        for (other, at) in inside {
             for (corner, from) in [(centre, o), (a, p), (b, q)] {
                 let is_linked = self.objects[other as usize].edges.contains(&corner);
                 if !is_linked && !self.collides((corner, other), from, at) {
@@ -455,8 +558,7 @@ impl<'a> Arrangement<'a> {
                 return true;
             }
             let edges = self.objects[other as usize].edges.iter();
-            found =
-                edges.filter(|&&to| !is_end(to)).any(|&to| crosses(p, q, at, self.objects[to as usize].at));
+            found = edges.filter(|&&to| !is_end(to)).any(|&to| crosses(p, q, at, self.at(to, at)));
             !found
         });
         found

@@ -22,9 +22,12 @@
 
 mod artwork;
 mod example;
+mod extent;
 mod ground;
 mod grow;
+mod measure;
 mod params;
+mod part;
 mod relax;
 mod ring;
 
@@ -39,6 +42,7 @@ use example::Analysis;
 use ground::Ground;
 use grow::{Arrangement, Mode, Rules};
 use kurbo::{BezPath, Point, Rect};
+use measure::Likeness;
 use rinceau_format::{Artwork, Container, Error, FillRule, Guide, Reference, Scene, Source, decimals_for};
 use ring::Weights;
 use std::collections::BTreeMap;
@@ -93,7 +97,11 @@ pub fn generate(
             let overrides = container.overrides.iter().map(|(name, value)| (name.as_str(), value.as_str()));
             let own = params.overridden(overrides).map_err(|error| error.at(container.source.at))?;
             let gap = own.gap.to_user(scene.px_per_unit);
-            let Some(outline) = Outline::new(&shapes, index, gap) else {
+            let outline = match own.repeat {
+                true => Outline::tile(&shapes, index, gap),
+                false => Outline::new(&shapes, index, gap),
+            };
+            let Some(outline) = outline else {
                 artwork.warnings.push(format!(
                     "{}: nothing of the container '{}' is left free",
                     container.source.at, container.source.id
@@ -111,8 +119,9 @@ pub fn generate(
     artwork.counts = BTreeMap::from([
         ("elements".to_owned(), drawing.count() as f64),
         ("grown".to_owned(), sum.grown as f64),
-        ("residual".to_owned(), sum.residual),
     ]);
+    let likeness = sum.likeness.iter().flat_map(Likeness::counts);
+    artwork.counts.extend(likeness.map(|(name, value)| (name.to_owned(), value)));
     if drawing.count() == 0 {
         return Err(Error::new(
             "nothing-fits",
@@ -152,8 +161,7 @@ fn with_sprays(scene: &Scene) -> Scene {
 #[derive(Default)]
 struct Sum {
     grown: usize,
-    /// The largest root of the mean square by which rings differ, in mean edges.
-    residual: f64,
+    likeness: Option<Likeness>,
     is_late: bool,
 }
 
@@ -186,8 +194,9 @@ impl One<'_> {
         }
         self.fill(&mut arrangement, &ground, example, (&rules, sum), progress);
         sum.grown += arrangement.grown.len();
-        sum.residual = sum.residual.max(relax::residual(&arrangement.objects) / example.mean);
-        drawing.add(&arrangement, (example, reference), self.outline, (self.params, rng))
+        let likeness = Likeness::new(&arrangement, example, &ground);
+        sum.likeness = Some(likeness.worse(sum.likeness.take()));
+        drawing.add(&arrangement, (example, reference, &ground), self.outline, (self.params, rng))
     }
 
     fn rules(&self, example: &Analysis, reference: &Reference, sum: &Sum) -> Result<Rules, Error> {
@@ -213,7 +222,12 @@ impl One<'_> {
             "flow" => Mode::Flow,
             _ => Mode::Fixed,
         };
-        let weights = Weights { place: params.w_place, symbol: params.w_symbol, repeat: params.w_repeat };
+        let weights = Weights {
+            place: params.w_place,
+            symbol: params.w_symbol,
+            repeat: params.w_repeat,
+            rings: params.w_rings,
+        };
         let room = MOST_ELEMENTS.saturating_sub(sum.grown);
         let most = match (params.count, self.outline) {
             (0, None) => SOME,
@@ -224,10 +238,23 @@ impl One<'_> {
     }
 
     fn ground(&self, example: &Analysis, rules: &Rules) -> Result<Ground, Error> {
+        let repeats = self.params.repeat;
+        let wrong = |sentence: &str, remedy: &str| Err(Error::new("no-tile", sentence, remedy));
+        if repeats && self.outline.is_none() {
+            return wrong("There is no shape to repeat", "Mark a rectangle as container: it is the tile");
+        }
+        if repeats && rules.mode == Mode::Flow {
+            return wrong(
+                "A flow does not repeat",
+                "Turn elements as drawn or as they fit best, or fill without repeating",
+            );
+        }
         let middles = self.outline.map(|outline| outline.middles(&self.params.edge, example));
-        let bounds = match &middles {
-            Some(region) => region.bounds(),
-            None => {
+        let tile = self.outline.and_then(|outline| outline.tile);
+        let bounds = match (&middles, tile) {
+            (_, Some(tile)) => tile,
+            (Some(region), None) => region.bounds(),
+            (None, None) => {
                 // So many elements surely find room around the start.
                 let side = example.mean * (4.0 + 3.0 * (rules.most as f64).sqrt());
                 let seed = self.scene.seeds.first().map_or(self.scene.view.center(), |seed| seed.at);
@@ -256,10 +283,10 @@ impl One<'_> {
         let guides = lines(&self.scene.guides);
         let ground = Ground::new(
             middles,
-            bounds.inflate(1e-9, 1e-9),
+            if repeats { bounds } else { bounds.inflate(1e-9, 1e-9) },
             (guides, with_flow),
             &lines(&self.scene.boundaries),
-            example.mean,
+            (example.mean, repeats),
         );
         if with_flow && ground.flow.is_none() {
             return Err(Error::new(
@@ -274,6 +301,9 @@ impl One<'_> {
     /// The place farthest from the outline.
     fn innermost(&self, ground: &Ground) -> Point {
         let Some(region) = &ground.middles else { return ground.bounds.center() };
+        if ground.repeats && ground.allows(ground.bounds.center()) {
+            return ground.bounds.center();
+        }
         let (bounds, reach) = (ground.bounds, ground.bounds.size().max_side());
         const STEPS: usize = 24;
         let place = |i: usize| {
@@ -297,7 +327,7 @@ impl One<'_> {
     ) {
         const ASK_EVERY: usize = 64;
         const FIRST: usize = 48;
-        let mut next = FIRST;
+        let (mut next, mut settled) = (FIRST, 0);
         let mut holes = if ground.middles.is_some() { holes(ground, example) } else { Vec::new() };
         loop {
             let done = arrangement.grown.len() as f64 / rules.most as f64;
@@ -309,7 +339,8 @@ impl One<'_> {
             if self.params.relax && arrangement.grown.len() >= next {
                 next = arrangement.grown.len() * 5 / 4 + FIRST;
                 progress.step("relax", done);
-                relaxed(arrangement, ground, example, relax::FEW_STEPS);
+                relaxed(arrangement, ground, example, (relax::FEW_STEPS, (self.params.window, settled)));
+                settled = arrangement.grown.len();
             }
             if goes_on {
                 continue;
@@ -332,9 +363,15 @@ impl One<'_> {
         }
         if self.params.relax {
             progress.step("relax", 1.0);
-            let fixed = relaxed(arrangement, ground, example, relax::STEPS);
-            let (objects, grown) = (&mut arrangement.objects, &mut arrangement.grown);
-            relax::part(objects, grown, &fixed, example, ground.bounds);
+            const MENDED: usize = 2;
+            for round in 0..=MENDED {
+                let fixed =
+                    relaxed(arrangement, ground, example, (relax::STEPS, (self.params.window, settled)));
+                if round == MENDED || arrangement.mend() == 0 {
+                    part::part(arrangement, &fixed, example, ground);
+                    break;
+                }
+            }
         }
     }
 }
@@ -355,15 +392,25 @@ fn holes(ground: &Ground, example: &Analysis) -> Vec<Point> {
     (0..columns * rows).rev().map(place).filter(|&at| ground.allows(at)).collect()
 }
 
-/// Relaxes with the starts in their places, and what stands at a boundary (E-041).
-fn relaxed(arrangement: &mut Arrangement, ground: &Ground, example: &Analysis, steps: usize) -> Vec<bool> {
+/// Relaxes with the starts in their places, and what stands at a boundary (E-041). With a window, also
+/// with all that is more than so many steps from what grew since then.
+fn relaxed(
+    arrangement: &mut Arrangement,
+    ground: &Ground,
+    example: &Analysis,
+    (steps, (window, since)): (usize, (usize, usize)),
+) -> Vec<bool> {
     let mut fixed: Vec<bool> = arrangement
         .objects
         .iter()
         .map(|object| object.is_gone || ground.is_at_boundary(object.at, 0.75 * example.mean))
         .collect();
     arrangement.starts.iter().for_each(|&start| fixed[start as usize] = true);
-    relax::relax(&mut arrangement.objects, &fixed, steps);
+    if window > 0 {
+        let is_near = arrangement.near_new(since, window);
+        fixed.iter_mut().zip(is_near).for_each(|(fixed, is_near)| *fixed |= !is_near);
+    }
+    relax::relax(&mut arrangement.objects, ground, &fixed, steps);
     arrangement.moved();
     fixed
 }

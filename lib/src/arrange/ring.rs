@@ -25,6 +25,8 @@ pub(super) struct Weights {
     pub place: f64,
     pub symbol: f64,
     pub repeat: f64,
+    /// Of the neighbours' own rings.
+    pub rings: f64,
 }
 
 /// How the rings of the example may be turned.
@@ -105,6 +107,11 @@ pub(super) fn best(
                 let own = &candidate.ring[(shift + i) % candidate.ring.len()];
                 error += weights.place * (rotated(own.offset, turn) - other.offset).hypot() / example.mean;
                 error += weights.symbol * f64::from(other.symbol.is_some_and(|symbol| symbol != own.symbol));
+                // What stands two steps away, as far as it is known: a neighbour that is a copy of another
+                // element than the example has there brings that one's ring along (E-060).
+                if let Some(copy) = other.copy_of {
+                    error += weights.rings * example.difference(copy, own.element);
+                }
                 if error >= most {
                     break;
                 }
@@ -115,6 +122,23 @@ pub(super) fn best(
         }
     }
     best
+}
+
+/// How much two rings differ: the least mean, over all ways to pair them in order, of distances in
+/// mean edges and of symbols that are not the same. 0 if one of them is not whole.
+pub(super) fn difference(a: &[Neighbour], b: &[Neighbour], mean: f64) -> f64 {
+    let (few, many) = if a.len() <= b.len() { (a, b) } else { (b, a) };
+    if few.is_empty() {
+        return 0.0;
+    }
+    let missing = (many.len() - few.len()) as f64;
+    let shifted = |shift: usize| {
+        let pairs = few.iter().enumerate().map(|(i, p)| (p, &many[(shift + i) % many.len()]));
+        let apart = pairs
+            .map(|(p, q)| (p.offset - q.offset).hypot() / mean + f64::from(u8::from(p.symbol != q.symbol)));
+        (apart.sum::<f64>() + missing) / many.len() as f64
+    };
+    (0..many.len()).map(shifted).fold(f64::INFINITY, f64::min)
 }
 
 /// The rotation that lays a ring on its pairs with the least squares (Müller et al. 2005, in two

@@ -1,0 +1,141 @@
+//! Keeping apart what the example keeps apart. Relaxation looks at neighbours alone; this is ours.
+
+use super::example::Analysis;
+use super::ground::Ground;
+use super::grow::{Arrangement, Object};
+use crate::geom::near::PointGrid;
+use kurbo::Vec2;
+
+/// Nearer than this share of the least distance that two symbols have in the example, elements move
+/// apart; and nearer than that, one of them goes.
+const NEAR: f64 = 0.9;
+const TOO_NEAR: f64 = 0.7;
+/// Elements deeper in each other than the example's, by more than this share of a mean edge, collide.
+const DEEP: f64 = 0.01;
+/// Rounds of moving apart.
+const ROUNDS: usize = 24;
+
+/// How two elements stand to each other.
+struct Pair {
+    /// How far the first has to go, and which way.
+    away: Vec2,
+    /// True if one of them has to go if that does not help.
+    is_bad: bool,
+}
+
+fn pair(own: &Object, other: &Object, between: Vec2, example: &Analysis) -> Option<Pair> {
+    let ((a, turn), (b, other_turn)) = (own.copy?, other.copy?);
+    let (a, b) = (&example.elements[a], &example.elements[b]);
+    let mut away = Vec2::ZERO;
+    let mut is_bad = false;
+    let allowed = allowed(example, a.symbol, b.symbol);
+    let enough = allowed + DEEP * example.mean;
+    if let Some((depth, out)) = a.extent.depth(turn, (&b.extent, other_turn), between, enough) {
+        (away, is_bad) = ((depth - allowed) * out, allowed == 0.0);
+    }
+    let (distance, least) = (between.hypot(), example.apart(a.symbol, b.symbol));
+    if distance < NEAR * least && away == Vec2::ZERO {
+        let way = if distance > 0.0 { -between / distance } else { Vec2::new(1.0, 0.0) };
+        away = (NEAR * least - distance) * way;
+        is_bad = distance < TOO_NEAR * least;
+    }
+    (away != Vec2::ZERO).then_some(Pair { away, is_bad })
+}
+
+/// How deep two symbols may lie in each other: not at all, if they do not in the example; scales and
+/// feathers now more and now less.
+fn allowed(example: &Analysis, a: usize, b: usize) -> f64 {
+    const MORE: f64 = 1.4;
+    match example.deep(a, b) {
+        deep if deep > DEEP * example.mean => MORE * deep,
+        _ => 0.0,
+    }
+}
+
+fn grid(arrangement: &Arrangement, ground: &Ground, reach: f64) -> PointGrid {
+    let margin = if ground.repeats { reach } else { 0.0 };
+    let mut grid = PointGrid::new(ground.bounds.inflate(margin, margin), reach);
+    for &i in &arrangement.grown {
+        for image in ground.images(arrangement.objects[i as usize].at, margin) {
+            grid.insert(image, i);
+        }
+    }
+    grid
+}
+
+/// Moves elements apart that came nearer to each other than any of their symbols are in the example,
+/// and takes out the younger of those that still are.
+pub(super) fn part(arrangement: &mut Arrangement, fixed: &[bool], example: &Analysis, ground: &Ground) {
+    let reach = example.reach.max(example.widest());
+    // What stands as it stood with all others need not be looked at again.
+    let mut has_moved = vec![true; arrangement.objects.len()];
+    for round in 0..=ROUNDS {
+        let grid = grid(arrangement, ground, reach);
+        let mut moves: Vec<(u32, Vec2)> = Vec::new();
+        let mut gone: Vec<u32> = Vec::new();
+        for &i in &arrangement.grown {
+            let own = &arrangement.objects[i as usize];
+            let mut by = Vec2::ZERO;
+            let mut goes = false;
+            grid.visit(own.at, reach, |at, j| {
+                if j == i || !(has_moved[i as usize] || has_moved[j as usize]) {
+                    return true;
+                }
+                if let Some(pair) = pair(own, &arrangement.objects[j as usize], at - own.at, example) {
+                    // Half each, or all of it away from one that stays.
+                    by += if fixed[j as usize] { 1.0 } else { 0.5 } * pair.away;
+                    let stays = match (fixed[i as usize], fixed[j as usize]) {
+                        (false, true) => true,
+                        (true, false) => false,
+                        _ => j < i,
+                    };
+                    goes |= pair.is_bad && stays && !gone.contains(&j);
+                }
+                true
+            });
+            if round == ROUNDS && goes {
+                gone.push(i);
+            } else if by != Vec2::ZERO && !fixed[i as usize] && round < ROUNDS {
+                moves.push((i, by));
+            }
+        }
+        if round == ROUNDS {
+            gone.sort_unstable();
+            arrangement.grown.retain(|i| gone.binary_search(i).is_err());
+            return;
+        }
+        if moves.is_empty() {
+            return;
+        }
+        has_moved.fill(round + 1 == ROUNDS);
+        for (i, by) in moves {
+            has_moved[i as usize] = true;
+            let at = &mut arrangement.objects[i as usize].at;
+            *at = ground.within(*at + by);
+        }
+    }
+}
+
+/// Pairs of elements that lie deeper in each other than the example's do.
+pub(super) fn collisions(arrangement: &Arrangement, example: &Analysis, ground: &Ground) -> usize {
+    let reach = example.widest();
+    let grid = grid(arrangement, ground, reach);
+    let mut found = 0;
+    for &i in &arrangement.grown {
+        let own = &arrangement.objects[i as usize];
+        grid.visit(own.at, reach, |at, j| {
+            let other = &arrangement.objects[j as usize];
+            if let (Some((a, turn)), Some((b, other_turn))) = (own.copy, other.copy)
+                && j < i
+            {
+                let (a, b) = (&example.elements[a], &example.elements[b]);
+                // What moves apart may stop a little before it is.
+                let enough = allowed(example, a.symbol, b.symbol) + 2.0 * DEEP * example.mean;
+                let depth = a.extent.depth(turn, (&b.extent, other_turn), at - own.at, enough);
+                found += usize::from(depth.is_some());
+            }
+            true
+        });
+    }
+    found
+}
