@@ -1,6 +1,7 @@
 //! A drawing: its text, and edits that touch nothing but what is ours.
 
 mod edit;
+mod flip;
 mod history;
 mod layers;
 mod mark;

@@ -113,6 +113,8 @@ pub struct Stroke {
     pub path: BezPath,
     /// Stroke width in user units of the root.
     pub width: f64,
+    /// Parameters of its own, by name.
+    pub overrides: BTreeMap<String, String>,
 }
 
 /// Drawn artwork that is kept clear and copied into the result.

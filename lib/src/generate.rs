@@ -86,6 +86,16 @@ pub const GENERATORS: &[Generator] = &[
             arrange::generate(&arrange::Params::from_values(values), scene, rng, progress)
         },
     },
+    Generator {
+        name: "connect",
+        title: "Show connectivity",
+        about: "Draw which elements of an example are neighbours; select edges there and run it again to flip them",
+        table: arrange::connect::Params::TABLE,
+        sources: arrange::connect::sources,
+        run: |values, scene, _, progress| {
+            arrange::connect::generate(&arrange::connect::Params::from_values(values), scene, progress)
+        },
+    },
 ];
 
 fn containers(scene: &Scene) -> Vec<&Source> {

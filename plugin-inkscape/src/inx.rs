@@ -244,9 +244,15 @@ fn help(generator: &Generator) -> &'static [&'static str] {
         "arrange" => &[
             "Draw some elements as they should be arranged, about five rows of five, group them, and mark the group as reference (Extensions > Ornament > Mark as). Those in the middle are copied; those around them show how they stand.",
             "Select a closed shape, or mark one as container, and press Apply: the example goes on over it.",
-            "Strokes marked as spray are filled as wide as they are; lines marked as boundary stop growth; a dot marked as seed is where it starts; with the flow, elements turn as guides do.",
+            "Repeated as a tile, the box around the shape fits its copies on all sides; the example is stretched a little so that whole rows go in.",
+            "Strokes marked as spray are filled as wide as they are, each with parameters of its own if it has some; lines marked as boundary stop growth; a dot marked as seed is where it starts; with the flow, elements turn as guides do.",
             "Elements that stand for the same thing are clones of each other, look the same, or have one name as rinceau:symbol.",
             "Elements are clones: change one in the layer's symbols, and all follow.",
+        ],
+        "connect" => &[
+            "Draws lines between the elements of an example that count as neighbours: blue ones can be flipped, grey ones lie at the border.",
+            "Where a line joins the wrong two, select it and choose this entry again: the other diagonal takes its place, orange from then on. Then continue the example.",
+            "Delete the layer when you no longer need it; what is flipped stays with the example.",
         ],
         "grow" => &[
             "Select a closed shape and press Apply: the pattern grows into it, into the largest empty place first.",

@@ -54,8 +54,12 @@ impl Done {
 /// Runs a generator on a drawing.
 pub fn generate(job: Job) -> Result<Done, Error> {
     job.progress.begin("read");
-    let document = Document::from_bytes(job.bytes)?;
-    let selection = Selection { ids: job.ids };
+    let mut document = Document::from_bytes(job.bytes)?;
+    let mut selection = Selection { ids: job.ids };
+    if job.generator.name == "connect" {
+        // Selected edges are flipped, and drawn anew.
+        (document, selection.ids) = document.with_flipped(&selection.ids)?;
+    }
     let mut scene = document.scene(&selection)?;
     add_rules(&mut scene, job.generator, &job.values)?;
     job.progress.limit(job.time_limit);

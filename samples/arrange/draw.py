@@ -327,6 +327,29 @@ def pebbles():
     sample.write()
 
 
+# A tile for cloth: the same stones, which fit their copies on all sides
+
+def cloth():
+    rng = random.Random(12)
+    sample = Sample("cloth", "Cloth",
+                    "A tile that repeats to all sides: what leaves it on the right comes in on the left, and the rows "
+                    "fit though the tile was not measured for them.")
+    across, down = 24, 19
+    tones = (EMBER[0], EMBER[1], EMBER[2], mix(EMBER[2], PAPER, 0.45))
+    places = [(across * (column + 0.5 * (row % 2)) + 14 + rng.uniform(-1.2, 1.2),
+               down * row + 12 + rng.uniform(-1.2, 1.2)) for row in range(9) for column in range(7)]
+    tone = in_turn(rng, tones, places, 1.15 * across)
+
+    def petals(x, y, colour):
+        turn = rng.uniform(0, 60)
+        return [path(placed("M0,0 C-3.2,-3 -2.6,-8.4 0,-9.2 C2.6,-8.4 3.2,-3 0,0 Z", at(x, y, turn + 72 * k)), fill=colour)
+                for k in range(5)] + [circle(x, y, 2.1, fill=PAPER)]
+
+    sample.example([named(f"flower{tones.index(t) + 1}", *petals(x, y, t)) for (x, y), t in zip(places, tone)])
+    sample.container(rectangle(230, 40, 630, 440), fill="#f7ead0", stroke="none", repeat="true")
+    sample.write()
+
+
 # Irregular and even: confetti (8c)
 
 def heart(x, y, size):
@@ -599,7 +622,7 @@ def kimono(sample):
 
 
 def main():
-    for draw in (bricks, pebbles, confetti, linked_stones, scales, feathers, blocks, euro, fillers, meadow):
+    for draw in (bricks, pebbles, cloth, confetti, linked_stones, scales, feathers, blocks, euro, fillers, meadow):
         draw()
 
 

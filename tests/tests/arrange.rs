@@ -165,6 +165,236 @@ fn sprayed_strokes_are_filled() {
     assert!(middles.iter().all(|at| (40.0..=160.0).contains(&at.y) && (240.0..=960.0).contains(&at.x)));
 }
 
+/// Strokes that are sprayed may have parameters of their own.
+#[test]
+fn a_sprayed_stroke_has_its_own_way() {
+    let spray = |y: i32, own: &str| {
+        format!(
+            "<path class='rinceau-spray' {own} d='M300,{y} H900' style='fill:none;stroke:#000;stroke-width:120'/>"
+        )
+    };
+    let (_, scene) =
+        read(svg(&format!("{}{}{}", bricks(5, 6), spray(100, "rinceau:count='7'"), spray(400, ""))));
+    let middles = middles(&arranged(&scene, &[]));
+    let upper = middles.iter().filter(|at| at.y < 250.0).count();
+    assert!(upper > 0 && upper <= 7 && middles.len() - upper > 60, "{upper} of {}", middles.len());
+}
+
+/// With whole elements only, none crosses a boundary.
+#[test]
+fn boundaries_keep_whole_elements_off() {
+    let rest = "<rect class='rinceau-container' x='-400' y='-300' width='800' height='600'/><path class='rinceau-boundary' d='M-420,-50 Q0,120 420,-40'/>";
+    let (_, scene) = read(svg(&format!("{}{rest}", bricks(5, 6))));
+    let line = contours(&scene.boundaries[0].path);
+    for (edge, may) in [("inside", false), ("middle", true)] {
+        let artwork = arranged(&scene, &[("edge", edge)]);
+        let crosses = |piece: &&Vec<Vec<Point>>| {
+            piece[0].windows(2).any(|pair| {
+                line[0]
+                    .windows(2)
+                    .any(|wall| rinceau::geom::near::crosses(pair[0], pair[1], wall[0], wall[1]))
+            })
+        };
+        let elements = pieces(&artwork, "elements");
+        assert!(elements.len() > 200, "{}", elements.len());
+        assert_eq!(elements.iter().any(|piece| crosses(&piece)), may, "{edge}");
+    }
+}
+
+/// What reaches exactly to the outline is inside.
+#[test]
+fn elements_may_touch_the_outline() {
+    // Two bricks and half a joint on each side: as wide as they are.
+    let panel = "<rect class='rinceau-container' x='0' y='0' width='78' height='38'/>";
+    let seed = "<circle class='rinceau-seed' cx='19' cy='9' r='1'/>";
+    let (_, scene) = read(svg(&format!("{}{panel}{seed}", bricks(5, 6))));
+    let artwork = arranged(&scene, &[]);
+    // Above two whole bricks, below one between them.
+    assert_eq!(pieces(&artwork, "elements").len(), 3);
+}
+
+/// In a flow elements lie over each other as they do in the example, whichever way they are turned.
+#[test]
+fn the_overlap_follows_the_flow() {
+    let sample = std::fs::read_to_string(support::root().join("samples/arrange/scales.svg")).unwrap();
+    let (_, scene) = read(sample);
+    let artwork = generated("arrange", &scene, &[("output", "paths".into())], 1).unwrap();
+    let items = &artwork.group("elements").unwrap().items;
+    let placed: Vec<(Point, Affine)> = items
+        .iter()
+        .map(|item| {
+            let part = &item.parts[0];
+            (bounds(&contours(&(part.transform * part.path.clone()))).center(), part.transform)
+        })
+        .collect();
+    // The example's scales lie over those to the right of them.
+    let (mut right, mut wrong) = (0, 0);
+    for (i, (a, pose)) in placed.iter().enumerate() {
+        for (b, _) in &placed[..i] {
+            let apart = pose.inverse() * (*b - *a).to_point() - pose.inverse() * Point::ORIGIN;
+            if apart.hypot() < 20.0 && apart.x.abs() > 6.0 {
+                if apart.x > 0.0 { right += 1 } else { wrong += 1 }
+            }
+        }
+    }
+    let (most, least) = (right.max(wrong), right.min(wrong));
+    assert!(most > 300 && least * 20 < most, "{right} one way, {wrong} the other");
+}
+
+/// With a window, what stands far from the newest elements stays where it was grown.
+#[test]
+fn a_window_leaves_the_rest_alone() {
+    let (_, scene) = read(svg(&dots(5)));
+    let places = |window: &str, relax: &str| {
+        let params = [("count", "600"), ("window", window), ("relax", relax), ("order", "growth")];
+        middles(&arranged(&scene, &params))
+    };
+    let (grown, whole, window) = (places("0", "false"), places("0", "true"), places("2", "true"));
+    let moved =
+        |other: &[Point]| grown.iter().zip(other).take(30).filter(|(a, b)| a.distance(**b) > 0.5).count();
+    assert!(moved(&whole) > 0, "relaxation moves nothing");
+    assert_ne!(whole, window);
+}
+
+mod tiles {
+    use super::*;
+
+    /// What crosses one side of a tile crosses the other.
+    #[test]
+    fn have_no_seam() {
+        for path in [support::root().join("samples/arrange/cloth.svg")] {
+            let (_, scene) = read(std::fs::read_to_string(&path).unwrap());
+            let tile = scene.containers[0].outlines[0].path.clone();
+            let tile = kurbo::Shape::bounding_box(&tile);
+            let artwork = arranged(&scene, &[]);
+            let all = pieces(&artwork, "elements");
+            let over = |x: Option<f64>, y: Option<f64>| -> Vec<Point> {
+                let mut over: Vec<Point> = all
+                    .iter()
+                    .map(|piece| bounds(piece))
+                    .filter(|b| {
+                        x.is_none_or(|x| b.x0 < x && b.x1 > x) && y.is_none_or(|y| b.y0 < y && b.y1 > y)
+                    })
+                    .map(|b| b.center() - kurbo::Vec2::new(x.unwrap_or(0.0), y.unwrap_or(0.0)))
+                    .collect();
+                over.sort_by(|a, b| (a.x + 3.0 * a.y).total_cmp(&(b.x + 3.0 * b.y)));
+                over
+            };
+            for (a, b) in [
+                (over(Some(tile.x0), None), over(Some(tile.x1), None)),
+                (over(None, Some(tile.y0)), over(None, Some(tile.y1))),
+            ] {
+                assert!(!a.is_empty() && a.len() == b.len(), "{} and {}", a.len(), b.len());
+                for (p, q) in a.iter().zip(&b) {
+                    assert!(p.distance(*q) < 0.02, "{p:?} and {q:?}");
+                }
+            }
+            assert_eq!(artwork.counts["collisions"], 0.0);
+        }
+    }
+
+    /// A lattice whose steps do not go into the tile is stretched until they do.
+    #[test]
+    fn hold_whole_rows() {
+        // 9.7 bricks and 10.8 rows.
+        let panel =
+            "<rect class='rinceau-container' x='300' width='388' height='216' rinceau:repeat='true'/>";
+        let (_, scene) = read(svg(&format!("{}{panel}", bricks(5, 6))));
+        let artwork = arranged(&scene, &[]);
+        let grown = artwork.counts["grown"];
+        assert!(grown == 100.0 || grown == 90.0, "{grown} bricks");
+        assert!(artwork.counts["residual"] < 0.02, "{}", artwork.counts["residual"]);
+    }
+
+    #[test]
+    fn are_shapes_without_a_flow() {
+        let done = rinceau(["arrange", "--repeat", "true"]).input(svg(&bricks(5, 6))).done();
+        assert!(done.stderr.contains("[no-tile]") && done.stdout.is_empty(), "{}", done.stderr);
+        let panel = "<rect class='rinceau-container' x='300' width='388' height='230'/><path class='rinceau-guide' d='M320,9H600'/>";
+        let done = rinceau(["arrange", "--repeat", "true", "--mode", "flow"])
+            .input(svg(&format!("{}{panel}", bricks(5, 6))))
+            .done();
+        assert!(done.stderr.contains("A flow does not repeat"), "{}", done.stderr);
+    }
+}
+
+mod connectivity {
+    use super::*;
+
+    /// An edge that is selected is flipped in the example, and the other diagonal drawn; a second time
+    /// it is back.
+    #[test]
+    fn is_drawn_and_flipped() {
+        let plain = svg(&format!("<!-- kept -->{}", bricks(4, 4)));
+        let drawn = rinceau(["connect"]).input(plain.as_str()).succeed().text().to_owned();
+        assert_eq!(support::without_layer(&drawn), plain);
+        let edges = |text: &str| -> Vec<(String, String)> {
+            let xml = parse(text);
+            let [layer] = layers(&xml)[..] else { panic!("{} layers", layers(&xml).len()) };
+            layer
+                .descendants()
+                .filter(|node| node.has_attribute((RINCEAU, "of")))
+                .map(|node| {
+                    let get = |name: &str| node.attribute(name).unwrap_or_default().to_owned();
+                    (get("id"), node.attribute((RINCEAU, "of")).unwrap_or_default().to_owned())
+                })
+                .collect()
+        };
+        let before = edges(&drawn);
+        let find = |all: &[(String, String)], of: &str| {
+            all.iter().find(|edge| edge.1 == of).map(|edge| edge.0.clone())
+        };
+        // The edge between two neighbours of a row has a triangle on either side.
+        let chosen = find(&before, "b1-1 b1-2").expect("an edge along a row");
+        let flipped = rinceau(["connect", "--id", &chosen]).input(drawn.as_str()).succeed().text().to_owned();
+        assert!(flipped.contains("rinceau:flip=\"b1-1 b1-2\""), "{flipped:.600}");
+        let after = edges(&flipped);
+        assert_eq!(before.len(), after.len());
+        assert!(find(&after, "b1-1 b1-2").is_none());
+        let new: Vec<&(String, String)> =
+            after.iter().filter(|edge| find(&before, &edge.1).is_none()).collect();
+        let [other] = new[..] else { panic!("{new:?}") };
+        let back = rinceau(["connect", "--id", &other.0]).input(flipped.as_str()).succeed().text().to_owned();
+        let ends = |all: &[(String, String)]| all.iter().map(|edge| edge.1.clone()).collect::<Vec<_>>();
+        assert_eq!(ends(&edges(&back)), ends(&before));
+    }
+
+    #[test]
+    fn needs_an_example_with_neighbours() {
+        let refusal = |body: &str| rinceau(["connect"]).input(svg(body)).done().stderr;
+        assert!(refusal("").contains("[no-reference]"));
+        let two = "<g class='rinceau-reference'><circle r='2'/><circle cx='9' r='2'/></g>";
+        assert!(refusal(two).contains("[no-neighbours]"));
+        assert!(
+            rinceau(["connect", "--id", "nobody"])
+                .input(svg(&bricks(3, 3)))
+                .done()
+                .stderr
+                .contains("[unknown-id]")
+        );
+    }
+}
+
+/// How like its example each sample is (checklist section 9's measures): see `measure`.
+#[test]
+fn samples_are_like_their_examples() {
+    for path in samples_of("arrange") {
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let (_, scene) = read(std::fs::read_to_string(&path).unwrap());
+        let counts = arranged(&scene, &[]).counts;
+        assert_eq!(counts["collisions"], 0.0, "{name}");
+        assert!(counts["repeats"] < 0.005, "{name}: {}", counts["repeats"]);
+        assert!(
+            counts["spacing-variation"] < 1.12 * counts["example-spacing-variation"],
+            "{name}: {counts:?}"
+        );
+        assert!(counts["symbols-apart"] < 0.05, "{name}: {}", counts["symbols-apart"]);
+        // Several symbols by chance need more elements than a sample has to come out even.
+        assert!(counts["neighbours-apart"] < 0.07, "{name}: {}", counts["neighbours-apart"]);
+        assert!(counts["residual"] < if name == "bricks" || name == "euro" { 0.02 } else { 0.25 }, "{name}");
+    }
+}
+
 #[test]
 fn sizes_angles_and_tones_vary_by_seed() {
     let rest = "<rect class='rinceau-container' x='300' y='0' width='300' height='200'/>";

@@ -246,6 +246,15 @@ fn an_example_goes_on_and_follows_its_shape() {
     assert_eq!(rest(&once), rest(&marked));
     let count = |text: &str| elements(layers(&parse(text))[0]).len();
     assert!(count(&once) > 80, "{}", count(&once));
+    // An edge of the drawn connectivity is flipped by selecting it.
+    let drawn = user.edit(&marked, "select-clear;org.rinceau.connect.noprefs");
+    let xml = parse(&drawn);
+    let [layer] = layers(&xml)[..] else { panic!("{} layers", layers(&xml).len()) };
+    let is_chosen = |node: &Node| node.attribute((RINCEAU, "of")) == Some("b2-1 b2-2");
+    let edge = layer.descendants().find(is_chosen).and_then(|node| node.attribute("id")).expect("an edge");
+    let flipped = user.edit(&drawn, &format!("select-by-id:{edge};org.rinceau.connect.noprefs"));
+    assert!(flipped.contains("rinceau:flip=\"b2-1 b2-2\"") && layers(&parse(&flipped)).len() == 1);
+
     let wider = once.replacen("width=\"60\"", "width=\"120\"", 1);
     let updated = user.edit(&wider, "org.rinceau.update.noprefs");
     assert_eq!(layers(&parse(&updated)).len(), 1);

@@ -57,7 +57,11 @@ impl Document {
     }
 
     /// The prefix of our namespace at the root, declared there if it is not.
-    fn declare(&self, xml: &roxmltree::Document, edits: &mut Vec<(Range<usize>, String)>) -> String {
+    pub(super) fn declare(
+        &self,
+        xml: &roxmltree::Document,
+        edits: &mut Vec<(Range<usize>, String)>,
+    ) -> String {
         let root = xml.root_element();
         if let Some(namespace) =
             root.namespaces().find(|namespace| namespace.uri() == NAMESPACE && namespace.name().is_some())

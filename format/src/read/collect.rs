@@ -229,8 +229,9 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
                     .iter()
                     .filter_map(|part| Some(part.style.stroke_width()? * mean_scale(part.transform)));
                 let width = widths.fold(0.0, f64::max);
+                let overrides = self.overrides(done.node);
                 let Guide { source, path, .. } = done.guide();
-                self.scene.sprays.push(Stroke { source, path, width });
+                self.scene.sprays.push(Stroke { source, path, width, overrides });
             }
             Some(Role::Fixed) => self.scene.fixed.push(Fixed { source: done.source, parts: done.parts }),
             Some(Role::Seed) => {

@@ -61,10 +61,17 @@ pub(super) struct Analysis {
     pub edges: Vec<(usize, usize)>,
 }
 
-impl Analysis {
-    /// Finds the neighbours.
+/// The elements of an example and the triangles between them.
+pub(super) struct Connectivity {
+    pub elements: Vec<Element>,
+    symbols: Vec<String>,
+    triangles: Vec<[usize; 3]>,
+}
+
+impl Connectivity {
+    /// Finds the neighbours (E-004 to E-006, E-009).
     ///
-    /// Errors: too few elements, or none that has neighbours all around.
+    /// Errors: too many elements.
     pub fn new(reference: &Reference, warnings: &mut Vec<String>) -> Result<Self, Error> {
         let source = &reference.source;
         if reference.examples.len() > MOST_EXAMPLES {
@@ -110,7 +117,29 @@ impl Analysis {
                 ));
             }
         }
-        let edges: BTreeSet<(usize, usize)> = triangles.iter().flat_map(|t| sides(*t)).map(sorted).collect();
+        Ok(Connectivity { elements, symbols, triangles })
+    }
+
+    /// Edges, each with the lesser index first, and how many triangles they have.
+    pub fn edges(&self) -> BTreeMap<(usize, usize), usize> {
+        let mut edges = BTreeMap::new();
+        for side in self.triangles.iter().flat_map(|t| sides(*t)) {
+            *edges.entry(sorted(side)).or_insert(0) += 1;
+        }
+        edges
+    }
+}
+
+impl Analysis {
+    /// Finds how the neighbours of each element stand around it.
+    ///
+    /// Errors: too many elements, or none that has neighbours all around.
+    pub fn new(reference: &Reference, warnings: &mut Vec<String>) -> Result<Self, Error> {
+        let source = &reference.source;
+        let connectivity = Connectivity::new(reference, warnings)?;
+        let edges: BTreeSet<(usize, usize)> = connectivity.edges().into_keys().collect();
+        let Connectivity { mut elements, symbols, triangles } = connectivity;
+        let points: Vec<Point> = elements.iter().map(|element| element.at).collect();
         for index in inner(&triangles, |index| elements[index].symbol) {
             let centre = points[index];
             let around = edges.iter().filter_map(|&(a, b)| match index {
@@ -148,6 +177,19 @@ impl Analysis {
             Analysis { elements, symbols, mean, least, apart, reach, depths, differences: Vec::new(), edges };
         analysis.compare();
         Ok(analysis)
+    }
+
+    /// The same with all its distances stretched, not its elements.
+    pub fn stretched(&self, (x, y): (f64, f64)) -> Self {
+        let mut stretched = self.clone();
+        for neighbour in stretched.elements.iter_mut().flat_map(|element| &mut element.ring) {
+            neighbour.offset = Vec2::new(x * neighbour.offset.x, y * neighbour.offset.y);
+        }
+        let both = (x * y).sqrt();
+        stretched.mean *= both;
+        stretched.least *= both.min(1.0);
+        stretched.apart.iter_mut().for_each(|apart| *apart *= both.min(1.0));
+        stretched
     }
 
     /// Compares the rings of all elements with each other.

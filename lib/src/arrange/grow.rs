@@ -333,6 +333,21 @@ impl<'a> Arrangement<'a> {
         mended
     }
 
+    /// The share of elements whose rings are broken: neighbours missing, or one too many.
+    pub fn broken(&self) -> f64 {
+        let is_broken = |&&i: &&u32| {
+            let object = &self.objects[i as usize];
+            let is_linked = |link: &Link| {
+                self.objects[link.to as usize].copy.is_some() && object.edges.contains(&link.to)
+            };
+            let (sum, count) = ring_error(&self.objects, object, self.ground);
+            object.ring.len() != object.edges.len()
+                || !object.ring.iter().all(is_linked)
+                || (sum / count.max(1.0)).sqrt() > 0.2 * self.example.mean
+        };
+        self.grown.iter().filter(is_broken).count() as f64 / self.grown.len().max(1) as f64
+    }
+
     /// Which objects are within so many steps of what has grown since some number of elements.
     pub fn near_new(&self, since: usize, steps: usize) -> Vec<bool> {
         let mut is_near = vec![false; self.objects.len()];

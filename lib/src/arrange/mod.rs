@@ -17,10 +17,13 @@
 //! direction field of the house, which knows walls, with the sense of the neighbours. Where a ring
 //! fits nowhere see `grow`.
 //!
-//! Not yet: rings of two steps and a coarse pass (E-060, E-062), elements compared by their extents
-//! (E-063), patterns that repeat on a torus.
+//! Beyond the paper: the neighbours' own rings count in the comparison (E-060, `ring`); where errors
+//! gather elements are chosen again (E-062, `Arrangement::mend`); elements keep apart by their outlines
+//! (E-063, `extent`, `part`); patterns repeat as tiles; the example's connectivity is drawn, and edges are
+//! flipped there (`connect`); numbers say how like its example a result is (`measure`).
 
 mod artwork;
+pub mod connect;
 mod example;
 mod extent;
 mod ground;
@@ -71,11 +74,7 @@ pub fn generate(
 ) -> Result<Artwork, Error> {
     progress.step("prepare", 0.0);
     if scene.references.is_empty() {
-        return Err(Error::new(
-            "no-reference",
-            "There is no example to continue",
-            "Group some elements as they should be arranged, and mark the group as reference (Extensions > Ornament > Mark as)",
-        ));
+        return Err(no_reference());
     }
     let scene = &with_sprays(scene);
     let mut artwork = Artwork { complete: true, warnings: scene.warnings.clone(), ..Artwork::default() };
@@ -133,7 +132,15 @@ pub fn generate(
     Ok(artwork)
 }
 
-/// A scene in which sprayed strokes are shapes (E-022).
+fn no_reference() -> Error {
+    Error::new(
+        "no-reference",
+        "There is no example to continue",
+        "Group some elements as they should be arranged, and mark the group as reference (Extensions > Ornament > Mark as)",
+    )
+}
+
+/// A scene in which sprayed strokes are shapes (E-022), with parameters of their own.
 fn with_sprays(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     let tolerance = 1e-4 * scene.view.size().max_side();
@@ -151,7 +158,8 @@ fn with_sprays(scene: &Scene) -> Scene {
         if !path.is_empty() {
             let outlines = vec![rinceau_format::Outline { path, rule: FillRule::EvenOdd }];
             let source = spray.source.clone();
-            scene.containers.push(Container { source, outlines, fill: None, overrides: BTreeMap::new() });
+            let overrides = spray.overrides.clone();
+            scene.containers.push(Container { source, outlines, fill: None, overrides });
         }
     }
     scene
@@ -185,7 +193,10 @@ impl One<'_> {
         let reference = &self.scene.references[self.reference];
         let rules = self.rules(example, reference, sum)?;
         let ground = self.ground(example, &rules)?;
-        let mut arrangement = Arrangement::new(example, &ground, &rules, &mut rng.fork());
+        let mut own = rng.fork();
+        let fitted = ground.repeats.then(|| self.fitted(example, &ground, &rules, (&own, &mut *progress)));
+        let example = fitted.as_ref().unwrap_or(example);
+        let mut arrangement = Arrangement::new(example, &ground, &rules, &mut own);
         let starts: Vec<Point> =
             self.scene.seeds.iter().map(|seed| seed.at).filter(|&at| ground.allows(at)).collect();
         match starts.is_empty() {
@@ -197,6 +208,38 @@ impl One<'_> {
         let likeness = Likeness::new(&arrangement, example, &ground);
         sum.likeness = Some(likeness.worse(sum.likeness.take()));
         drawing.add(&arrangement, (example, reference, &ground), self.outline, (self.params, rng))
+    }
+
+    /// The example stretched a little, so that a whole number of its rows and columns goes into a tile:
+    /// of several stretches the one after which the fewest rings are broken where growth meets itself.
+    fn fitted(
+        &self,
+        example: &Analysis,
+        ground: &Ground,
+        rules: &Rules,
+        (rng, progress): (&Rng, &mut dyn Progress),
+    ) -> Analysis {
+        const STRETCHES: [f64; 9] = [1.0, 1.02, 0.98, 1.04, 0.97, 1.06, 1.08, 1.1, 1.12];
+        /// Of larger tiles a seam is a small part, and to try takes long.
+        const MOST_TRIED: f64 = 2000.0;
+        let expected = ground.bounds.area() / (example.mean * example.mean);
+        let mut best = (f64::INFINITY, (1.0, 1.0));
+        let tries = STRETCHES.into_iter().flat_map(|x| STRETCHES.map(|y| (x, y)));
+        for by in tries {
+            if expected > MOST_TRIED || !progress.step("fit", 0.5) {
+                break;
+            }
+            let stretched = example.stretched(by);
+            let mut tried = Arrangement::new(&stretched, ground, rules, &mut rng.clone());
+            tried.start(self.innermost(ground));
+            tried.grow(usize::MAX);
+            // Of two that are alike the one that is stretched less.
+            let badness = tried.broken() + 0.3 * ((by.0 - 1.0).abs() + (by.1 - 1.0).abs());
+            if badness < best.0 {
+                best = (badness, by);
+            }
+        }
+        example.stretched(best.1)
     }
 
     fn rules(&self, example: &Analysis, reference: &Reference, sum: &Sum) -> Result<Rules, Error> {
