@@ -219,7 +219,7 @@ fn as_neighbours(arrangement: &Arrangement) -> Vec<f64> {
     }
     let mut fixed: Vec<bool> = vec![false; arrangement.objects.len()];
     arrangement.starts.iter().for_each(|&start| fixed[start as usize] = true);
-    let heights = relax::solved(&terms, &fixed, relax::STEPS);
+    let heights = relax::solved(&terms, &fixed, (relax::STEPS, 1e-3));
     arrangement.grown.iter().map(|&i| heights[i as usize].x).collect()
 }
 

@@ -38,9 +38,12 @@ impl Ground {
         let over = if middles.is_some() { middles.clone() } else { whole() };
         let flow =
             over.filter(|_| with_flow).and_then(|over| DirectionField::new(&over, &guides, 0.5 * cell));
-        let mut walls = SegmentGrid::new(bounds, cell);
-        boundaries.iter().flat_map(|line| line.windows(2)).for_each(|pair| walls.insert(pair[0], pair[1], 0));
-        let boundaries = (!boundaries.is_empty()).then_some(walls);
+        let boundaries = (!boundaries.is_empty()).then(|| {
+            let mut walls = SegmentGrid::new(bounds, cell);
+            let sides = boundaries.iter().flat_map(|line| line.windows(2));
+            sides.for_each(|pair| walls.insert(pair[0], pair[1], 0));
+            walls
+        });
         Ground { middles, flow, guides, boundaries, bounds, repeats }
     }
 

@@ -168,7 +168,7 @@ impl<'a> Arrangement<'a> {
 
     /// The grid anew, after objects moved.
     pub fn moved(&mut self) {
-        self.grid = empty_grid(self.ground, self.example);
+        self.grid.clear();
         for i in 0..self.objects.len() {
             if !self.objects[i].is_gone {
                 self.objects[i].at = self.ground.within(self.objects[i].at);
@@ -286,8 +286,8 @@ impl<'a> Arrangement<'a> {
     /// neighbours, or does not fit them, or one of them is a copy of the same element, another element
     /// of the same symbol that fits better takes its place. How many did.
     pub fn mend(&mut self) -> usize {
-        /// Rings that are nearer to the example's than this, in mean edges, are well.
-        const WELL: f64 = 0.06;
+        /// Whole rings that are nearer to the example's than this, in mean edges, are well.
+        const WELL: f64 = 0.25;
         let mut mended = 0;
         for number in 0..self.grown.len() {
             let index = self.grown[number];
@@ -303,6 +303,10 @@ impl<'a> Arrangement<'a> {
                 continue;
             }
             let Some((around, found)) = self.fitting(index) else { continue };
+            if repeats && around.iter().any(|&other| copy_of(other) == Some(found.element)) {
+                mended += usize::from(self.vary(index));
+                continue;
+            }
             let ring = &self.example.elements[found.element].ring;
             // Only against repeats may some of its ring be missing.
             if around.len() != object.edges.len()
@@ -331,6 +335,24 @@ impl<'a> Arrangement<'a> {
             mended += 1;
         }
         mended
+    }
+
+    /// Makes an element a copy of another of its symbol than all its neighbours are, in its place and with
+    /// its ring: the last way out against repeats. False if there is none.
+    fn vary(&mut self, index: u32) -> bool {
+        let object = &self.objects[index as usize];
+        let Some((copy, turn)) = object.copy else { return false };
+        let is_near = |element: usize| {
+            let others = object.edges.iter().filter_map(|&other| self.objects[other as usize].copy);
+            others.into_iter().any(|(other, _)| other == element)
+        };
+        let symbol = self.example.elements[copy].symbol;
+        let alike = (0..self.example.elements.len())
+            .filter(|&element| self.example.elements[element].symbol == symbol && !is_near(element));
+        let difference = |&element: &usize| Distance(self.example.difference(copy, element));
+        let Some(other) = alike.min_by_key(difference) else { return false };
+        self.objects[index as usize].copy = Some((other, turn));
+        true
     }
 
     /// The share of elements whose rings are broken: neighbours missing, or one too many.

@@ -298,8 +298,8 @@ impl One<'_> {
             (_, Some(tile)) => tile,
             (Some(region), None) => region.bounds(),
             (None, None) => {
-                // So many elements surely find room around the start.
-                let side = example.mean * (4.0 + 3.0 * (rules.most as f64).sqrt());
+                // So many elements surely find room around the start: four times what they take.
+                let side = example.mean * (4.0 + (rules.most as f64).sqrt());
                 let seed = self.scene.seeds.first().map_or(self.scene.view.center(), |seed| seed.at);
                 Rect::from_center_size(seed, (2.0 * side, 2.0 * side))
             }
@@ -370,6 +370,8 @@ impl One<'_> {
     ) {
         const ASK_EVERY: usize = 64;
         const FIRST: usize = 48;
+        /// Steps from what is new within which things move while others grow.
+        const RIM: usize = 5;
         let (mut next, mut settled) = (FIRST, 0);
         let mut holes = if ground.middles.is_some() { holes(ground, example) } else { Vec::new() };
         loop {
@@ -382,7 +384,9 @@ impl One<'_> {
             if self.params.relax && arrangement.grown.len() >= next {
                 next = arrangement.grown.len() * 5 / 4 + FIRST;
                 progress.step("relax", done);
-                relaxed(arrangement, ground, example, (relax::FEW_STEPS, (self.params.window, settled)));
+                // What grew before stands well by now.
+                let window = if self.params.window > 0 { self.params.window } else { RIM };
+                relaxed(arrangement, ground, example, (relax::FEW_STEPS, (window, settled)));
                 settled = arrangement.grown.len();
             }
             if goes_on {
@@ -408,9 +412,9 @@ impl One<'_> {
             progress.step("relax", 1.0);
             const MENDED: usize = 2;
             for round in 0..=MENDED {
-                let fixed =
-                    relaxed(arrangement, ground, example, (relax::STEPS, (self.params.window, settled)));
-                if round == MENDED || arrangement.mend() == 0 {
+                let steps = if round == MENDED { relax::STEPS } else { 2 * relax::FEW_STEPS };
+                let fixed = relaxed(arrangement, ground, example, (steps, (self.params.window, settled)));
+                if round == MENDED || (arrangement.mend() == 0 && round > 0) {
                     part::part(arrangement, &fixed, example, ground);
                     break;
                 }
@@ -453,7 +457,8 @@ fn relaxed(
         let is_near = arrangement.near_new(since, window);
         fixed.iter_mut().zip(is_near).for_each(|(fixed, is_near)| *fixed |= !is_near);
     }
-    relax::relax(&mut arrangement.objects, ground, &fixed, steps);
+    const NEAR: f64 = 1e-3;
+    relax::relax(&mut arrangement.objects, ground, &fixed, (steps, NEAR * example.mean));
     arrangement.moved();
     fixed
 }

@@ -13,7 +13,7 @@ const TOO_NEAR: f64 = 0.7;
 /// Elements deeper in each other than the example's, by more than this share of a mean edge, collide.
 const DEEP: f64 = 0.01;
 /// Rounds of moving apart.
-const ROUNDS: usize = 24;
+const ROUNDS: usize = 20;
 
 /// How two elements stand to each other.
 struct Pair {
@@ -53,7 +53,7 @@ fn allowed(example: &Analysis, a: usize, b: usize) -> f64 {
 }
 
 fn grid(arrangement: &Arrangement, ground: &Ground, reach: f64) -> PointGrid {
-    let margin = if ground.repeats { reach } else { 0.0 };
+    let margin = if ground.repeats { 1.3 * reach } else { 0.0 };
     let mut grid = PointGrid::new(ground.bounds.inflate(margin, margin), reach);
     for &i in &arrangement.grown {
         for image in ground.images(arrangement.objects[i as usize].at, margin) {
@@ -69,19 +69,34 @@ pub(super) fn part(arrangement: &mut Arrangement, fixed: &[bool], example: &Anal
     let reach = example.reach.max(example.widest());
     // What stands as it stood with all others need not be looked at again.
     let mut has_moved = vec![true; arrangement.objects.len()];
+    let mut grid = grid(arrangement, ground, reach);
+    // Those to be looked at, in the order in which they grew; and how far things went since the grid
+    // was made.
+    let (mut todo, mut drift): (Vec<u32>, f64) = (arrangement.grown.clone(), 0.0);
     for round in 0..=ROUNDS {
-        let grid = grid(arrangement, ground, reach);
+        const STALE: f64 = 0.1;
+        if drift > STALE * reach {
+            grid = self::grid(arrangement, ground, reach);
+            drift = 0.0;
+        }
         let mut moves: Vec<(u32, Vec2)> = Vec::new();
         let mut gone: Vec<u32> = Vec::new();
-        for &i in &arrangement.grown {
+        for &i in &todo {
             let own = &arrangement.objects[i as usize];
             let mut by = Vec2::ZERO;
             let mut goes = false;
-            grid.visit(own.at, reach, |at, j| {
-                if j == i || !(has_moved[i as usize] || has_moved[j as usize]) {
+            grid.visit(own.at, reach + drift, |entered, j| {
+                let is_far = entered.distance_squared(own.at) > (reach + drift).powi(2);
+                if is_far || j == i || !(has_moved[i as usize] || has_moved[j as usize]) {
                     return true;
                 }
-                if let Some(pair) = pair(own, &arrangement.objects[j as usize], at - own.at, example) {
+                let other = &arrangement.objects[j as usize];
+                let at = ground.near(other.at, own.at);
+                // Another image of it.
+                if at.distance(entered) > 1.01 * drift + 1e-9 * reach {
+                    return true;
+                }
+                if let Some(pair) = pair(own, other, at - own.at, example) {
                     // Half each, or all of it away from one that stays.
                     by += if fixed[j as usize] { 1.0 } else { 0.5 } * pair.away;
                     let stays = match (fixed[i as usize], fixed[j as usize]) {
@@ -107,12 +122,24 @@ pub(super) fn part(arrangement: &mut Arrangement, fixed: &[bool], example: &Anal
         if moves.is_empty() {
             return;
         }
-        has_moved.fill(round + 1 == ROUNDS);
-        for (i, by) in moves {
+        let is_last = round + 1 == ROUNDS;
+        has_moved.fill(is_last);
+        let mut farthest = 0.0;
+        for &(i, by) in &moves {
             has_moved[i as usize] = true;
+            farthest = f64::max(farthest, by.hypot());
             let at = &mut arrangement.objects[i as usize].at;
             *at = ground.within(*at + by);
         }
+        drift += farthest;
+        let mut is_near = has_moved.clone();
+        for &(i, _) in &moves {
+            grid.visit(arrangement.objects[i as usize].at, reach + drift, |_, j| {
+                is_near[j as usize] = true;
+                true
+            });
+        }
+        todo = arrangement.grown.iter().copied().filter(|&i| is_near[i as usize]).collect();
     }
 }
 
@@ -124,10 +151,11 @@ pub(super) fn collisions(arrangement: &Arrangement, example: &Analysis, ground: 
     for &i in &arrangement.grown {
         let own = &arrangement.objects[i as usize];
         grid.visit(own.at, reach, |at, j| {
+            if j >= i || at.distance_squared(own.at) > reach * reach {
+                return true;
+            }
             let other = &arrangement.objects[j as usize];
-            if let (Some((a, turn)), Some((b, other_turn))) = (own.copy, other.copy)
-                && j < i
-            {
+            if let (Some((a, turn)), Some((b, other_turn))) = (own.copy, other.copy) {
                 let (a, b) = (&example.elements[a], &example.elements[b]);
                 // What moves apart may stop a little before it is.
                 let enough = allowed(example, a.symbol, b.symbol) + 2.0 * DEEP * example.mean;

@@ -21,9 +21,12 @@ const LEFT: f64 = 1e-4;
 /// A term of the sum: from, to, and how far the two are from where they should be.
 pub(super) type Term = (u32, u32, Vec2);
 
-fn terms(objects: &[Object], ground: &Ground) -> Vec<Term> {
+fn terms(objects: &[Object], ground: &Ground, fixed: &[bool]) -> Vec<Term> {
     let mut terms = Vec::with_capacity(6 * objects.len());
     for (i, object) in objects.iter().enumerate().filter(|(_, object)| !object.is_gone) {
+        if fixed[i] && object.edges.iter().all(|&j| fixed[j as usize]) {
+            continue;
+        }
         // Elements that lost or gained an edge, and seeds, keep the shape that they have.
         let is_whole = object.copy.is_some()
             && object.ring.len() == object.edges.len()
@@ -54,25 +57,38 @@ pub(super) fn residual(objects: &[Object], ground: &Ground) -> f64 {
     if count > 0.0 { (sum / count).sqrt() } else { 0.0 }
 }
 
-/// Moves objects; `fixed` ones stay.
-pub(super) fn relax(objects: &mut [Object], ground: &Ground, fixed: &[bool], steps: usize) {
-    let moves = solved(&terms(objects, ground), fixed, steps);
+/// Moves objects; `fixed` ones stay. `near` is how near to the least is near enough, in user units.
+pub(super) fn relax(objects: &mut [Object], ground: &Ground, fixed: &[bool], (steps, near): (usize, f64)) {
+    let moves = solved(&terms(objects, ground, fixed), fixed, (steps, near));
     for (object, by) in objects.iter_mut().zip(moves) {
         object.at += by;
     }
 }
 
-/// Moves that make the sum of all terms least, as far as `steps` go.
-pub(super) fn solved(terms: &[Term], fixed: &[bool], steps: usize) -> Vec<Vec2> {
-    let n = fixed.len();
+/// Moves that make the sum of all terms least, as far as `steps` go; `near` is near enough.
+pub(super) fn solved(terms: &[Term], fixed: &[bool], (steps, near): (usize, f64)) -> Vec<Vec2> {
+    // Only what may move is part of the system.
+    const FIXED: u32 = u32::MAX;
+    let mut number = vec![FIXED; fixed.len()];
+    let free: Vec<u32> = (0..fixed.len() as u32).filter(|&i| !fixed[i as usize]).collect();
+    free.iter().enumerate().for_each(|(i, &of)| number[of as usize] = i as u32);
+    let n = free.len();
     let mut degree = vec![0.0_f64; n];
     let mut force = vec![Vec2::ZERO; n];
+    // Both ends free, and one of them.
+    let (mut pairs, mut held) = (Vec::with_capacity(terms.len()), vec![0.0_f64; n]);
     for &(i, j, error) in terms {
+        let (i, j) = (number[i as usize], number[j as usize]);
         for (at, sign) in [(i, -1.0), (j, 1.0)] {
-            degree[at as usize] += 1.0;
-            if !fixed[at as usize] {
+            if at != FIXED {
+                degree[at as usize] += 1.0;
                 force[at as usize] += sign * error;
             }
+        }
+        match (i, j) {
+            (FIXED, FIXED) => {}
+            (FIXED, at) | (at, FIXED) => held[at as usize] += 1.0,
+            pair => pairs.push(pair),
         }
     }
     let scaled = |r: &[Vec2]| -> Vec<Vec2> {
@@ -83,23 +99,20 @@ pub(super) fn solved(terms: &[Term], fixed: &[bool], steps: usize) -> Vec<Vec2> 
     let mut z = scaled(&force);
     let mut p = z.clone();
     let mut rz = dot(&force, &z);
-    let end = rz * LEFT * LEFT;
+    let end = (rz * LEFT * LEFT).max(near * near * n as f64);
     let mut product = vec![Vec2::ZERO; n];
     for _ in 0..steps {
         if rz <= end || rz == 0.0 {
             break;
         }
-        product.iter_mut().for_each(|v| *v = Vec2::ZERO);
-        for &(i, j, _) in terms {
+        for ((v, p), held) in product.iter_mut().zip(&p).zip(&held) {
+            *v = *held * *p;
+        }
+        for &(i, j) in &pairs {
             let (i, j) = (i as usize, j as usize);
             let apart = p[j] - p[i];
             product[j] += apart;
             product[i] -= apart;
-        }
-        for (v, fixed) in product.iter_mut().zip(fixed) {
-            if *fixed {
-                *v = Vec2::ZERO;
-            }
         }
         let step = rz / dot(&p, &product).max(f64::MIN_POSITIVE);
         for i in 0..n {
@@ -114,5 +127,7 @@ pub(super) fn solved(terms: &[Term], fixed: &[bool], steps: usize) -> Vec<Vec2> 
             p[i] = z[i] + turn * p[i];
         }
     }
-    moves
+    let mut all = vec![Vec2::ZERO; fixed.len()];
+    free.iter().zip(moves).for_each(|(&i, by)| all[i as usize] = by);
+    all
 }

@@ -55,16 +55,19 @@ pub(super) fn sort_around<T: Copy>(
     offset: impl Fn(&T) -> Vec2,
     are_linked: impl Fn(&T, &T) -> bool,
 ) {
-    around.sort_by(|a, b| angle(offset(a)).total_cmp(&angle(offset(b))));
-    let n = around.len();
+    let mut sorted: Vec<(f64, T)> = around.iter().map(|one| (angle(offset(one)), *one)).collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let n = sorted.len();
     let gap = |i: usize| {
-        let before = &around[(i + n - 1) % n];
-        let gap = angle(offset(&around[i])) - angle(offset(before));
+        let (before, own) = (&sorted[(i + n - 1) % n], &sorted[i]);
+        let gap = own.0 - before.0;
         let gap = if gap < 0.0 || (i == 0 && n == 1) { gap + std::f64::consts::TAU } else { gap };
-        if are_linked(before, &around[i]) { gap } else { gap + std::f64::consts::TAU }
+        if are_linked(&before.1, &own.1) { gap } else { gap + std::f64::consts::TAU }
     };
     let first = (0..n).fold((0, -1.0), |best, i| if gap(i) > best.1 { (i, gap(i)) } else { best }).0;
-    around.rotate_left(first);
+    for (i, place) in around.iter_mut().enumerate() {
+        *place = sorted[(first + i) % n].1;
+    }
 }
 
 pub(super) fn rotated(v: Vec2, turn: Vec2) -> Vec2 {

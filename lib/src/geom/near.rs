@@ -86,6 +86,11 @@ impl PointGrid {
         PointGrid { cells, content }
     }
 
+    /// Takes all points out.
+    pub fn clear(&mut self) {
+        self.content.iter_mut().for_each(Vec::clear);
+    }
+
     /// Adds a point.
     pub fn insert(&mut self, p: Point, owner: u32) {
         let index = self.cells.index(p);
