@@ -138,13 +138,15 @@ impl Layers {
     }
 }
 
-/// Where something between two sides is drawn: in its place, and in what repeats also a period
-/// away if it lies over an end, so that a tile that is cut off there has no seam.
+/// Where something between two sides is drawn: in its place, and in what repeats also wherever one of
+/// its copies lies over the tile, so that one that is cut off there has no seam.
 fn shifts(plant: &Plant, left: f64, right: f64) -> Vec<Affine> {
     let mut shifts = vec![Affine::IDENTITY];
     if let Some((start, period)) = plant.cells.span() {
-        shifts.extend((left < start).then_some(Affine::translate((period, 0.0))));
-        shifts.extend((right > start + period).then_some(Affine::translate((-period, 0.0))));
+        let first = ((start - right) / period).floor() as i64 + 1;
+        let last = ((start + period - left) / period).ceil() as i64 - 1;
+        let others = (first..=last).filter(|&k| k != 0);
+        shifts.extend(others.map(|k| Affine::translate((k as f64 * period, 0.0))));
     }
     shifts
 }
