@@ -308,6 +308,10 @@ impl<'a> Arrangement<'a> {
                 continue;
             }
             let ring = &self.example.elements[found.element].ring;
+            if repeats && around.len() != object.edges.len() {
+                mended += usize::from(self.vary(index));
+                continue;
+            }
             // Only against repeats may some of its ring be missing.
             if around.len() != object.edges.len()
                 || ring.len() != around.len() && !repeats
@@ -327,7 +331,7 @@ impl<'a> Arrangement<'a> {
             let (sum, count) = ring_error(&self.objects, &mended_object, self.ground);
             let better = (sum / count.max(1.0)).sqrt() / self.example.mean < 0.9 * present;
             let is_new = around.iter().all(|&other| copy_of(other) != Some(found.element));
-            if is_whole && !(better || repeats && is_new) {
+            if !is_new || is_whole && !(better || repeats) {
                 continue;
             }
             self.objects[index as usize] =

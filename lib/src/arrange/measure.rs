@@ -35,9 +35,16 @@ impl Likeness {
             let own = &arrangement.objects[i as usize];
             for &j in own.edges.iter().filter(|&&j| j > i) {
                 let (Some(a), Some(b)) = (copies(i), copies(j)) else { continue };
-                lengths.push(ground.near(arrangement.objects[j as usize].at, own.at).distance(own.at));
                 pairs.push(sorted(symbol(a), symbol(b)));
                 same += f64::from(u8::from(a == b));
+                // Edges of no ring close what is left over, as the skewed ones that the example is without.
+                let other = &arrangement.objects[j as usize];
+                let is_of_ring =
+                    own.ring.iter().any(|link| link.to == j) || other.ring.iter().any(|link| link.to == i);
+                if !is_of_ring {
+                    continue;
+                }
+                lengths.push(ground.near(arrangement.objects[j as usize].at, own.at).distance(own.at));
             }
         }
         let edges = pairs.len().max(1) as f64;
