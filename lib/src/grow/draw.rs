@@ -44,17 +44,7 @@ impl Drawing<'_> {
             if name == "seed" && of_kind(kind).is_none() {
                 continue;
             }
-            let plain = Look {
-                at: 0,
-                kind,
-                art: "outline".into(),
-                width: 0.0,
-                size: 1.0,
-                tone: 1,
-                by: String::new(),
-                thick: String::new(),
-                join: false,
-            };
+            let plain = Look::plain(0, kind);
             let look = of_kind(kind).unwrap_or(&plain);
             self.kind(world, look, &mut elements);
         }

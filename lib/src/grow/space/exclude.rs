@@ -29,15 +29,8 @@ impl Space {
 
     /// Takes the points within `radius` off the exclude list.
     pub fn readmit(&mut self, at: Point, radius: f64) {
-        let columns = self.levels[0].columns as i64;
-        let rows = self.levels[0].best.len() as i64 / columns;
-        let side = self.cell * BLOCK as f64;
-        let of = |v: f64, most: i64| ((v / side).floor() as i64).clamp(0, most - 1);
-        let from = at - self.origin;
-        let (x0, x1) = (of(from.x - radius, columns), of(from.x + radius, columns));
-        let (y0, y1) = (of(from.y - radius, rows), of(from.y + radius, rows));
         let mut freed = Vec::new();
-        for block in (y0..=y1).flat_map(|y| (x0..=x1).map(move |x| (y * columns + x) as usize)) {
+        for block in self.blocks_near(at, radius) {
             let excluded = &mut self.excluded;
             self.excluded_in[block].retain(|&number| {
                 let is_near = excluded[number as usize].is_some_and(|point| point.distance(at) <= radius);
@@ -101,7 +94,8 @@ impl Space {
         }
     }
 
-    fn listed_near(&self, at: Point, radius: f64) -> Vec<(u32, Point)> {
+    /// Blocks that a disc may reach, row by row.
+    fn blocks_near(&self, at: Point, radius: f64) -> impl Iterator<Item = usize> + use<> {
         let columns = self.levels[0].columns as i64;
         let rows = self.levels[0].best.len() as i64 / columns;
         let side = self.cell * BLOCK as f64;
@@ -109,8 +103,11 @@ impl Space {
         let from = at - self.origin;
         let (x0, x1) = (of(from.x - radius, columns), of(from.x + radius, columns));
         let (y0, y1) = (of(from.y - radius, rows), of(from.y + radius, rows));
-        (y0..=y1)
-            .flat_map(|y| (x0..=x1).map(move |x| (y * columns + x) as usize))
+        (y0..=y1).flat_map(move |y| (x0..=x1).map(move |x| (y * columns + x) as usize))
+    }
+
+    fn listed_near(&self, at: Point, radius: f64) -> Vec<(u32, Point)> {
+        self.blocks_near(at, radius)
             .flat_map(|block| &self.excluded_in[block])
             .filter_map(|&number| Some((number, self.excluded[number as usize]?)))
             .filter(|(_, point)| point.distance(at) <= radius)

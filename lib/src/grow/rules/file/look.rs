@@ -27,12 +27,10 @@ pub struct Look {
     pub join: bool,
 }
 
-impl Reader<'_, '_> {
-    pub(super) fn look(&mut self) -> Result<(), Error> {
-        let at = self.at();
-        let kind = self.kind("the type that is drawn")?;
-        self.accept(":");
-        let mut look = Look {
+impl Look {
+    /// The look of a type of which nothing is said but where: its outline.
+    pub fn plain(at: usize, kind: usize) -> Self {
+        Look {
             at,
             kind,
             art: "outline".into(),
@@ -42,7 +40,16 @@ impl Reader<'_, '_> {
             by: String::new(),
             thick: String::new(),
             join: false,
-        };
+        }
+    }
+}
+
+impl Reader<'_, '_> {
+    pub(super) fn look(&mut self) -> Result<(), Error> {
+        let at = self.at();
+        let kind = self.kind("the type that is drawn")?;
+        self.accept(":");
+        let mut look = Look::plain(at, kind);
         loop {
             let word = self.name("art, width, size, tone, by, thick or join")?;
             match word.text {
