@@ -382,6 +382,66 @@ look arm: art stem, width 1.2, thick width, join
     save("half-open-band", 660, 130, band + "\n" + seed, metadata)
 
 
+def frame():
+    """A frame whose sides repeat and whose corners are solved."""
+    d = "M10,10H650V490H10ZM90,90V410H570V90Z"
+    save("frame", 660, 500, panel("frame", d, rules="vines", symmetry="frame", repeats=3, rule_unit=2.8))
+
+
+def half_open_frame():
+    """A border that is closed outside and open inside, repeats along its sides, and has a blossom of its
+    own for every corner (000 1.1, 2.1.3)."""
+    rules = (
+        """// In a frame: closed outside, fading inside, a blossom in the corners.
+smallest 1.0
+element seed: point
+element rose: circle
+element arm: bezier, hand = 1, width = 1.0
+
+// Scallops: deep in the middle of each module, shallow where two meet and at the corners.
+fn is_open(place) {
+    let p = panel();
+    let along = (place.x - p.left) / p.width;
+    let depth = (place.y - p.top) / p.height;
+    if p.section == "corner" { return max(along, depth) > 0.68 && min(along, depth) > 0.6; }
+    depth > 0.66 - 0.26 * cos(2.0 * PI() * along)
+}
+
+rule seed -> {
+    parent.sterile = true;
+    let p = panel();
+    if p.section == "corner" {
+        let rose = add("rose");
+        let r = 0.26 * p.height;
+        rose.set(p.center.offset(-PI() * 0.75, 0.16 * p.height), r);
+    } else {
+        let from = parent.center;
+        scroll(from, from.offset(-PI() / 2.0, 0.2 * p.height), 1, 1.3);
+    }
+}
+
+rule rose -> {
+    if goal.radius < 1.6 || is_open(goal.center) { return FAILURE; }
+    let towards = goal.center - parent.center;
+    let from = parent.center.offset(towards, parent.radius);
+    let size = min(goal.radius, 14.0);
+    let hand = if parent.children % 2 == 0 { 1 } else { -1 };
+    scroll(from, from.offset(towards, size), hand, 0.4 + size / 14.0);
+}
+"""
+        + SCROLLS.replace(
+            "    if goal.radius < 2.0 { return FAILURE; }\n    let t", "    if goal.radius < 1.4 || is_open(goal.center) { return FAILURE; }\n    let t"
+        )
+        + """
+look arm: art stem, width 1.2, thick width, join
+look rose: art peony
+"""
+    )
+    d = "M10,10H650V430H10ZM110,110V330H550V110Z"
+    frame = panel("page", d, rules="half-open-frame", symmetry="frame", repeats=2, rule_unit=2.6)
+    save("half-open-frame", 660, 440, frame, carried("half-open-frame", rules))
+
+
 def drawn():
     """The drawing's own blossom and leaf for the elements of a pattern."""
     body = [
@@ -405,4 +465,6 @@ if __name__ == "__main__":
     corners()
     half_open()
     half_open_band()
+    frame()
+    half_open_frame()
     drawn()

@@ -10,10 +10,14 @@ use rinceau::geom::region::Region;
 use rinceau::grow::{Design, Params};
 use rinceau::{Deadline, Rng, quality};
 use rinceau_format::{Artwork, Error, RuleSet, Scene};
-use support::geometry::{assert_inside, blob, cases, contours, generated, pieces, read, rng_seed, waves};
+use support::geometry::{
+    assert_drawn_inside, blob, cases, contours, generated, pieces, read, rng_seed, waves,
+};
 use support::{RINCEAU, layers, parse, rinceau, svg};
 
 const PATTERNS: [&str; 7] = ["dots", "flower", "spiral", "vines", "vase", "willow", "willow-planned"];
+
+const STYLES: [&str; 8] = ["drawn", "outline", "brush", "ribbon", "rope", "leafy", "beads", "acanthus"];
 
 /// A square of a hundred units of the rules.
 const PANEL: &str = "<path id='panel' class='rinceau-container' d='M0,0H400V400H0Z' fill='#eeeeee'/>";
@@ -64,7 +68,9 @@ fn crossing(a: &[Vec<Point>], b: &[Vec<Point>], joint: f64) -> Option<Point> {
         for t in b.iter().flat_map(|line| line.windows(2)) {
             if crosses(s[0], s[1], t[0], t[1]) {
                 let at = s[0].midpoint(s[1]);
-                let reach = joint + s[0].distance(s[1]);
+                // What leaves a joint nearly along the other line is near it for longer.
+                let angle = (s[1] - s[0]).normalize().cross((t[1] - t[0]).normalize()).abs();
+                let reach = joint / angle.max(0.2) + s[0].distance(s[1]);
                 if ends.iter().all(|end| end.distance(at) > reach) {
                     return Some(at);
                 }
@@ -83,12 +89,13 @@ proptest! {
     fn what_grows_keeps_to_its_place(
         outer in waves(), hole in waves(), hole_radius in 20.0..70.0f64, seed in 0..1000u64,
         pattern in prop::sample::select(PATTERNS.to_vec()), unit in 4.0..9.0f64,
+        style in prop::sample::select(STYLES.to_vec()),
     ) {
         let hole = if hole_radius > 30.0 { blob((200.0, 200.0), hole_radius, &hole) } else { String::new() };
         let shape = format!("{}{hole}", blob((200.0, 200.0), 150.0, &outer));
         let fixed = "<circle class='rinceau-fixed' cx='120' cy='200' r='14'/>";
         let (_, scene) = read(svg(&format!("<path class='rinceau-container' fill-rule='evenodd' d='{shape}'/>{fixed}")));
-        let artwork = match grown(&scene, &[("rules", pattern), ("rule-unit", &unit.to_string())], seed) {
+        let artwork = match grown(&scene, &[("rules", pattern), ("rule-unit", &unit.to_string()), ("style", style)], seed) {
             Ok(artwork) => artwork,
             // A panel may be too small for a pattern, and that has a sentence.
             Err(error) => { prop_assert!(error.to_string().contains("Nothing grows"), "{error}"); return Ok(()); }
@@ -96,11 +103,14 @@ proptest! {
         let panel = region(&shape);
         let drawn = proxies(&artwork);
         let lines: Vec<Vec<Vec<Point>>> = drawn.iter().map(|(_, path)| contours(path)).collect();
-        for (i, piece) in lines.iter().enumerate() {
-            assert_inside(&format!("{pattern}: {} {i}", drawn[i].0), piece, &panel);
-            for pair in piece.iter().flat_map(|line| line.windows(2)) {
-                prop_assert!(point_segment(Point::new(120.0, 200.0), pair[0], pair[1]) > 14.0);
+        for group in ["proxies", "elements"] {
+            for (i, item) in artwork.group(group).expect(group).items.iter().enumerate() {
+                let name = format!("{pattern} as {style}: {} {i} of the {group}", item.of);
+                item.parts.iter().for_each(|part| assert_drawn_inside(&name, part, &panel));
             }
+        }
+        for pair in lines.iter().flatten().flat_map(|line| line.windows(2)) {
+            prop_assert!(point_segment(Point::new(120.0, 200.0), pair[0], pair[1]) > 14.0);
         }
         // Elements that may lie over others are so by their pattern's word.
         if pattern == "willow" { return Ok(()); }
@@ -266,6 +276,65 @@ mod symmetry {
                 "{name}: no image of {p:?} at {image:?}"
             );
         }
+    }
+
+    /// Modules along each side, corners alike and mirrored, all within the frame.
+    #[test]
+    fn frames_repeat_along_their_sides_and_solve_their_corners() {
+        let frame = "M10,10H570V350H10ZM70,70V290H510V70Z";
+        let own = include_str!("../../samples/grow/half-open-frame.svg");
+        for (name, shape, period, side) in [("vines", frame, 110.0, 60.0), ("half-open", "", 220.0, 100.0)] {
+            let (scene, params, shape) = match name {
+                "half-open" => (read(own).1, vec![], "M10,10H650V430H10ZM110,110V330H550V110Z"),
+                _ => {
+                    let frame = format!("<path class='rinceau-container' fill-rule='evenodd' d='{shape}'/>");
+                    let params =
+                        vec![("rules", "vines"), ("symmetry", "frame"), ("repeats", "4"), ("rule-unit", "3")];
+                    (read(svg(&frame)).1, params, shape)
+                }
+            };
+            let artwork = grown(&scene, &params, 1).unwrap();
+            assert!(artwork.warnings.is_empty(), "{:?}", artwork.warnings);
+            let panel = region(shape);
+            for item in &artwork.group("elements").unwrap().items {
+                item.parts.iter().for_each(|part| assert_drawn_inside(name, part, &panel));
+            }
+            let all: Vec<Point> = pieces(&artwork, "elements").iter().map(|piece| middle(piece)).collect();
+            let bounds = panel.bounds();
+            let center = Affine::translate(bounds.center().to_vec2());
+            for (x, y) in [(-1.0, 1.0), (1.0, -1.0)] {
+                assert_all_there(&all, center * Affine::scale_non_uniform(x, y) * center.inverse(), name);
+            }
+            let in_box = |x0: f64, x1: f64, y1: f64| -> Vec<Point> {
+                let is_in = |p: &&Point| (x0..x1).contains(&p.x) && (10.0..y1).contains(&p.y);
+                all.iter().filter(is_in).copied().collect()
+            };
+            let (start, end) = (10.0 + side, bounds.x1 - side - period);
+            let first = in_box(start, start + period, start);
+            assert!(first.len() > 20, "{name}: {}", first.len());
+            let mut at = start;
+            while at < end - 1.0 {
+                at += period;
+                let module = in_box(at, at + period, start);
+                assert_eq!(module.len(), first.len(), "{name}");
+                let is_there = |p: &Point| {
+                    let back = Point::new(p.x - (at - start), p.y);
+                    first.iter().any(|q| q.distance(back) < 0.05)
+                };
+                assert!(module.iter().all(is_there), "{name}");
+            }
+            let corner = in_box(10.0, start, start);
+            assert!(corner.len() > 4, "{name}");
+            // Down the diagonal.
+            assert_all_there(&corner, Affine::new([0.0, 1.0, 1.0, 0.0, 0.0, 0.0]), name);
+        }
+    }
+
+    #[test]
+    fn a_frame_needs_a_hole() {
+        let (_, scene) = read(svg(PANEL));
+        let error = grown(&scene, &[("symmetry", "frame")], 1).unwrap_err().to_string();
+        assert!(error.contains("needs a frame: a shape with a hole"), "{error}");
     }
 
     /// What crosses one side of a tile crosses the other.

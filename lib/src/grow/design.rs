@@ -5,14 +5,16 @@ use super::draw::{self, Arts, Drawing};
 use super::growth::{self, Grown, Settings};
 use super::room::Room;
 use super::rules::{Rules, Shared, State};
+use super::section::{Section, sections};
 use super::start::{Start, plant, stem_kind};
-use super::symmetry::{Extent, Symmetry};
+use super::symmetry::Extent;
 use super::world::World;
 use super::{Params, rule_text};
+use crate::geom::region::Region;
 use crate::progress::Progress;
 use crate::rng::Rng;
 use crate::shapes::Shapes;
-use rinceau_format::{Artwork, Error, Scene};
+use rinceau_format::{Artwork, Error, Scene, Source};
 use std::collections::BTreeMap;
 
 /// Cells of one container at most; a larger one has coarser cells.
@@ -32,7 +34,7 @@ pub struct Design {
     counts: BTreeMap<String, f64>,
 }
 
-/// What has grown in one container.
+/// What has grown in one container, or in a section of it.
 struct Panel {
     /// Of the container.
     index: usize,
@@ -41,6 +43,9 @@ struct Panel {
     grown: Grown,
     /// Length of a unit of the rules.
     unit: f64,
+    section: Section,
+    /// What nothing that is drawn leaves.
+    outline: Option<Region>,
 }
 
 impl Design {
@@ -66,39 +71,57 @@ impl Design {
         };
         for (index, own) in own.iter().enumerate() {
             let source = &scene.containers[index].source;
-            let start = Start { scene, shapes: &shapes, index, params: own, unit: 0.0 };
-            let Some(panel) = design.panel(start, &mut rng.fork(), progress)? else {
+            let mut start = Start { scene, shapes: &shapes, index, params: own, unit: 0.0 };
+            let area = shapes.areas[index];
+            start.unit = match own.rule_unit.to_user(scene.px_per_unit) {
+                0.0 => area.sqrt() / UNITS,
+                unit => unit,
+            };
+            let is_sane = start.unit > 0.0 && area / (start.unit * start.unit) < 1e8;
+            let mut panels = Vec::new();
+            if is_sane {
+                let sections = sections(&own.symmetry, &start.shape(), own.repeats);
+                for section in sections.map_err(|error| error.at(source.at))? {
+                    panels.extend(design.panel(&start, section, &mut rng.fork(), progress)?);
+                }
+            }
+            if panels.is_empty() {
                 let sentence = format!("the container '{}' has no room for anything to grow", source.id);
                 design.warnings.push(format!("{}: {sentence}", source.at));
-                continue;
-            };
-            let grown = &panel.grown;
-            design.warnings.extend(grown.note.clone());
-            if grown.steps == 0 && grown.complete {
-                design.warnings.push(format!(
-                    "{}: nothing of the pattern grows in '{}': {}",
-                    source.at,
-                    source.id,
-                    grown.reasons()
-                ));
             }
-            if grown.full {
-                design.warnings.push(format!(
-                    "{}: the growth in '{}' ended because there may be {} elements at most",
-                    source.at, source.id, own.max_elements
-                ));
+            for panel in panels {
+                design.take(panel, source, own);
             }
-            if own.debug > 0 && grown.view.is_none() {
-                design
-                    .warnings
-                    .push(format!("Growth ended before step {}: there is nothing to show of it", own.debug));
-            }
-            design.complete &= grown.complete && !grown.full;
-            *design.counts.entry("steps".into()).or_insert(0.0) += grown.steps as f64;
-            *design.counts.entry("failed".into()).or_insert(0.0) += grown.failed as f64;
-            design.panels.push(panel);
         }
         Ok(design)
+    }
+
+    /// Counts what has grown, and says what the artist should know of it.
+    fn take(&mut self, panel: Panel, source: &Source, own: &Params) {
+        let grown = &panel.grown;
+        self.warnings.extend(panel.section.symmetry.note.clone());
+        if grown.steps == 0 && grown.complete {
+            self.warnings.push(format!(
+                "{}: nothing of the pattern grows in '{}': {}",
+                source.at,
+                source.id,
+                grown.reasons()
+            ));
+        }
+        if grown.full {
+            self.warnings.push(format!(
+                "{}: the growth in '{}' ended because there may be {} elements at most",
+                source.at, source.id, own.max_elements
+            ));
+        }
+        if own.debug > 0 && grown.view.is_none() {
+            self.warnings
+                .push(format!("Growth ended before step {}: there is nothing to show of it", own.debug));
+        }
+        self.complete &= grown.complete && !grown.full;
+        *self.counts.entry("steps".into()).or_insert(0.0) += grown.steps as f64;
+        *self.counts.entry("failed".into()).or_insert(0.0) += grown.failed as f64;
+        self.panels.push(panel);
     }
 
     /// Draws it. Of the parameters `style` and `palette` count; nothing grows again.
@@ -120,6 +143,8 @@ impl Design {
                 unit: panel.unit,
                 fill: scene.containers[panel.index].fill.as_deref(),
                 arts: &self.arts,
+                section: &panel.section,
+                outline: panel.outline.as_ref(),
             };
             let mut state = panel.shared.borrow_mut();
             artwork.groups.extend(drawing.groups(state.world(), &panel.grown));
@@ -138,37 +163,31 @@ impl Design {
         Ok(artwork)
     }
 
-    /// Grows in one container; `None` if there is no room.
+    /// Grows in a section of a container; `None` if there is no room.
     fn panel(
         &self,
-        mut start: Start,
+        start: &Start,
+        section: Section,
         rng: &mut Rng,
         progress: &mut dyn Progress,
     ) -> Result<Option<Panel>, Error> {
-        let (scene, params, index) = (start.scene, start.params, start.index);
-        let mut rules = self.rules(&start)?;
-        let area = start.shapes.areas[index];
-        start.unit = match params.rule_unit.to_user(scene.px_per_unit) {
-            0.0 => area.sqrt() / UNITS,
-            unit => unit,
-        };
-        if !(start.unit > 0.0 && area / (start.unit * start.unit) < 1e8) {
-            return Ok(None);
-        }
+        let (params, index) = (start.params, start.index);
+        let mut rules = self.rules(start)?;
         progress.step("space", 0.0);
+        let Some(region) = start.region(&section) else { return Ok(None) };
         let frame = start.shapes.frame(index).scale_from_origin(1.0 / start.unit);
-        let symmetry = Symmetry::new(&params.symmetry, frame, params.repeats);
-        let Some(region) = start.region(&symmetry) else { return Ok(None) };
-        let bounds = match symmetry.extent {
-            Extent::Panel => region.bounds(),
-            Extent::Band | Extent::Plane => frame,
+        let bounds = match (section.domain, section.symmetry.extent) {
+            (Some(domain), _) => domain,
+            (None, Extent::Panel) => region.bounds(),
+            (None, Extent::Band | Extent::Plane) => frame,
         };
         let cell = CELL.max((bounds.area() / MOST_CELLS).sqrt());
-        let region = (!matches!(symmetry.extent, Extent::Plane)).then_some(region);
-        let images = symmetry.images(bounds)?;
+        let region = (!matches!(section.symmetry.extent, Extent::Plane)).then_some(region);
+        let images = section.symmetry.images(bounds)?;
         let space = Room::new(region.as_ref(), bounds, cell, &images);
         let mut world = World::new(rules.kinds(), space, region, bounds);
         world.set_images(images);
+        world.section = section.name;
         world.most = params.max_elements;
         let stems = start.stems();
         let stem_kind = stem_kind(&world).filter(|_| !stems.is_empty());
@@ -184,8 +203,15 @@ impl Design {
         let mut grown = growth::grow(&mut rules, &shared, &settings, progress)?;
         grown.steps += sprouted;
         grown.complete &= is_in_time;
-        grown.note = symmetry.note;
-        Ok(Some(Panel { index, rules, shared, grown, unit: start.unit }))
+        Ok(Some(Panel {
+            index,
+            rules,
+            shared,
+            grown,
+            unit: start.unit,
+            outline: start.outline(&section),
+            section,
+        }))
     }
 
     /// The rules of a container.

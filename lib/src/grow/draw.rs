@@ -2,13 +2,16 @@
 //! lines as skeletal strokes, or laid on discs; growth does not know of it.
 
 mod art;
+mod inside;
 mod strand;
 
 use super::growth::{Grown, View};
 use super::params::Params;
 use super::piece::Proxy;
 use super::rules::Look;
+use super::section::Section;
 use super::world::{Element, World};
+use crate::geom::region::Region;
 use crate::palette::palette;
 use art::Art;
 pub(super) use art::Arts;
@@ -28,6 +31,9 @@ pub(super) struct Drawing<'a> {
     /// Of the container, to choose colours by.
     pub fill: Option<&'a str>,
     pub arts: &'a Arts,
+    pub section: &'a Section,
+    /// What is drawn stays in it; `None` where the ornament repeats all over the plane.
+    pub outline: Option<&'a Region>,
 }
 
 impl Drawing<'_> {
@@ -62,6 +68,7 @@ impl Drawing<'_> {
         let style = self.params.style.as_str();
         let drawn = arts.drawn(&name);
         let largest = self.largest(world, look);
+        let places = self.section.all_places();
         let how = match (drawn, style, look.art.as_str()) {
             (_, "outline", _) | (None, _, "outline" | "none") => How::Lines,
             (None, _, "fill") => How::Areas,
@@ -88,17 +95,46 @@ impl Drawing<'_> {
                     (_, art) => arts.named(art),
                 },
             };
-            let parts = match art {
-                Some(art) => self.bent(&strand, look, art, &world.elements[strand.element], largest, world),
-                None => self.plain(&strand, look, &world.elements[strand.element], largest, world),
+            let element = &world.elements[strand.element];
+            let colour = self.colour(look, element, largest, world);
+            let thick = field(world, element, &look.thick).unwrap_or(1.0).max(0.0);
+            let drawn = |share: f64| match art {
+                Some(art) => self.bent(&strand, look, art, colour.as_deref(), thick, share),
+                None => self.plain(&strand, look, colour.as_deref(), share),
             };
-            for &image in world.images() {
+            // What would leave the panel is drawn narrower. Its proxies keep inside.
+            let shares = [1.0, 0.7, 0.45, 0.25, 0.1].into_iter().map(drawn);
+            let Some(parts) = shares.into_iter().find(|parts| self.is_inside(parts)) else { continue };
+            let images = places.as_deref().unwrap_or(world.images());
+            // In a special position, on a mirror or an axis, several images are one.
+            let near = 1e-6 * world.bounds.width();
+            let is_special = |&(center, ..): &(Point, f64, f64)| {
+                images[1..].iter().any(|&by| (by * center).distance(center) < near)
+            };
+            let special = strand.disc.filter(is_special);
+            for (number, &image) in images.iter().enumerate() {
+                let is_again = special.is_some_and(|(center, ..)| {
+                    images[..number].iter().any(|&other| (other * center).distance(image * center) < near)
+                });
+                if is_again {
+                    continue;
+                }
                 let moved: Vec<Part> = parts.iter().map(|part| self.placed(part, image)).collect();
-                if is_seen(&moved, world.bounds.scale_from_origin(self.unit), world.images().len()) {
+                let is_all_seen = places.is_some() || world.images().len() == 1;
+                if is_all_seen || is_seen(&moved, world.bounds.scale_from_origin(self.unit)) {
                     group.items.push(Item::new(name.clone(), moved));
                 }
             }
         }
+    }
+
+    fn is_inside(&self, parts: &[Part]) -> bool {
+        self.outline.is_none_or(|outline| {
+            parts.iter().all(|part| {
+                let stroke = part.style.stroke_width().unwrap_or(0.0) / self.unit;
+                inside::is_inside(&part.path, 0.5 * stroke, outline)
+            })
+        })
     }
 
     /// A part in its place in the drawing.
@@ -124,29 +160,25 @@ impl Drawing<'_> {
         palette(&self.params.palette, self.fill)[(look.tone.max(1) - 1 + shift) % 3]
     }
 
-    /// Artwork along a line or on a disc.
+    /// Artwork along a line or on a disc, with this share of its width or size.
     fn bent(
         &self,
         strand: &Strand,
         look: &Look,
         art: &Art,
-        element: &Element,
-        largest: f64,
-        world: &World,
+        colour: Option<&str>,
+        thick: f64,
+        share: f64,
     ) -> Vec<Part> {
-        let colour = self.colour(look, element, largest, world);
         let paths = match strand.disc {
-            Some((center, radius, angle)) => art.round(center, radius * look.size, angle),
-            None => {
-                let thick = field(world, element, &look.thick).unwrap_or(1.0).max(0.0);
-                art.along(&strand.path, look.width * thick, strand.widths.as_deref())
-            }
+            Some((center, radius, angle)) => art.round(center, radius * look.size * share, angle),
+            None => art.along(&strand.path, look.width * thick, strand.widths.as_deref(), share),
         };
         let painted = |(path, style): (BezPath, &Style)| {
             let mut style = style.scaled(self.unit, 3);
             if art.builtin {
                 let tone = match style.get("fill") {
-                    Some("#111111") => Some(colour.clone().unwrap_or_else(|| self.tone(look, 0).to_owned())),
+                    Some("#111111") => Some(colour.unwrap_or_else(|| self.tone(look, 0)).to_owned()),
                     Some("#555555") => Some(self.tone(look, 1).to_owned()),
                     Some("#999999") => Some(self.tone(look, 2).to_owned()),
                     Some("#dddddd") => Some("#f3e3bd".to_owned()),
@@ -161,21 +193,13 @@ impl Drawing<'_> {
         paths.into_iter().map(painted).collect()
     }
 
-    /// The shapes themselves, as lines or filled.
-    fn plain(
-        &self,
-        strand: &Strand,
-        look: &Look,
-        element: &Element,
-        largest: f64,
-        world: &World,
-    ) -> Vec<Part> {
-        let colour = self.colour(look, element, largest, world);
-        let colour = colour.unwrap_or_else(|| self.tone(look, 0).to_owned());
+    /// The shapes themselves, as lines with this share of their width, or filled.
+    fn plain(&self, strand: &Strand, look: &Look, colour: Option<&str>, share: f64) -> Vec<Part> {
+        let colour = colour.unwrap_or_else(|| self.tone(look, 0));
         let style = if look.art == "fill" && self.params.style != "outline" {
-            Style::filled(&colour)
+            Style::filled(colour)
         } else {
-            line(&colour, if look.width > 0.0 { look.width } else { OUTLINE } * self.unit)
+            line(colour, if look.width > 0.0 { look.width } else { OUTLINE } * self.unit * share)
         };
         vec![Part { path: strand.path.clone(), transform: Affine::IDENTITY, style }]
     }
@@ -271,8 +295,8 @@ fn rainbow(share: f64) -> String {
     format!("#{:02x}{:02x}{:02x}", byte(r), byte(g), byte(b))
 }
 
-fn is_seen(parts: &[Part], window: Rect, images: usize) -> bool {
-    images == 1 || parts.iter().any(|part| part.path.bounding_box().overlaps(window))
+fn is_seen(parts: &[Part], window: Rect) -> bool {
+    parts.iter().any(|part| part.path.bounding_box().overlaps(window))
 }
 
 /// Sublayers of the same name become one.

@@ -49,8 +49,6 @@ pub(super) struct Grown {
     pub view: Option<View>,
     /// Why children were not placed: unset or without sense, outside, over others.
     pub refused: [usize; 3],
-    /// What the artist should know of the symmetry.
-    pub note: Option<String>,
 }
 
 impl Grown {

@@ -4,7 +4,8 @@
 //! SIGGRAPH 1998.
 //!
 //! 1. Read a rule file (000 4.2, Appendix A): `rules`.
-//! 2. Measure each container, and start from seeds (4.1; W-073, W-103): `start`, `space`, `symmetry`.
+//! 2. Measure each container, and start from seeds (4.1; W-073, W-103): `start`, `space`, `symmetry`,
+//!    `section`.
 //! 3. Again and again find the largest empty circle that touches the ornament, and let the elements
 //!    near it try their rules (4.1; W-090 to W-104): `growth`, `world`.
 //! 4. Draw the elements, apart from all that (3.2; W-064, W-084 to W-086): `design`, `draw`.
@@ -22,6 +23,7 @@ mod params;
 mod piece;
 mod room;
 mod rules;
+mod section;
 mod space;
 mod start;
 mod symmetry;

@@ -44,6 +44,7 @@ pub const SYMMETRIES: &[(&str, &str)] = &[
     ("d5", "Five mirrors"),
     ("d6", "Six mirrors"),
     ("d8", "Eight mirrors"),
+    ("frame", "Frame: sides repeat between corners"),
     ("p111", "Band: repeated"),
     ("p1a1", "Band: glide reflection"),
     ("p1m1", "Band: mirrored along the middle"),
@@ -85,9 +86,9 @@ crate::params! {
         rule_unit: Length = "rule-unit", "Size of the pattern", Basic, Kind::Length, "0";
         #[doc = "Where growth starts in a shape that no seed is marked in"]
         start: String = "start", "Starts", Basic, Kind::Choice(STARTS), "middle";
-        #[doc = "Grows everything together with its images. Bands and wallpapers grow in the rectangle around the shape, which then repeats without a seam"]
+        #[doc = "Grows everything together with its images. Bands and wallpapers grow in the rectangle around the shape, which then repeats without a seam; a frame repeats a mirrored piece along each side, and one in its corners"]
         symmetry: String = "symmetry", "Symmetry", Basic, Kind::Choice(SYMMETRIES), "none";
-        #[doc = "How often a band or wallpaper repeats within the width of the shape"]
+        #[doc = "How often a band or wallpaper repeats within the width of the shape, or a frame between its corners"]
         repeats: usize = "repeats", "Repeats", More, Kind::Whole { min: 1, max: 50 }, "1";
         #[doc = "Colours: three tones that print well"]
         palette: String = "palette", "Colours", Basic, Kind::Choice(PALETTES), "auto";

@@ -35,22 +35,19 @@ impl Room {
 
     /// The room in a region, or all over a box, between the images of symmetric growth.
     pub fn new(region: Option<&Region>, bounds: Rect, cell: f64, images: &[Affine]) -> Self {
-        let to_images = |p: Point| images[1..].iter().map(move |&by| 0.5 * p.distance(by * p));
-        let fine_cell = cell;
-        let space = |cell: f64, most: f32| {
-            let (columns, rows) = Space::grid(bounds, cell);
+        let space = |grain: f64, most: f32| {
+            let (columns, rows) = Space::grid(bounds, grain);
             let mut inside = match region {
-                Some(region) => inside_distances(region, bounds, cell, most),
+                Some(region) => inside_distances(region, bounds, grain, most),
                 None => vec![most; columns * rows],
             };
             if images.len() > 1 {
-                for (i, distance) in inside.iter_mut().enumerate() {
-                    let middle = Vec2::new((i % columns) as f64 + 0.5, (i / columns) as f64 + 0.5);
-                    let wall = to_images(bounds.origin() + cell * middle).fold(f64::INFINITY, f64::min);
-                    *distance = distance.min((wall + Self::SEAM * fine_cell) as f32);
-                }
+                let most = f64::from(most) - Self::SEAM * cell;
+                between_images(images, bounds.origin(), grain, (columns, rows), most, |i, wall| {
+                    inside[i] = inside[i].min((wall + Self::SEAM * cell) as f32);
+                });
             }
-            Space::new(bounds, cell, &inside)
+            Space::new(bounds, grain, &inside)
         };
         let (is_small, without) = (false, 0);
         Room {
@@ -142,6 +139,40 @@ impl Room {
     /// As [`Space::farthest`].
     pub fn farthest(&self, towards: Vec2) -> Option<Point> {
         self.coarse.farthest(towards).or_else(|| self.fine.farthest(towards))
+    }
+}
+
+/// For cells of a grid half the distance of their middles to the nearest of their images, if that is less
+/// than `most`.
+fn between_images(
+    images: &[Affine],
+    origin: Point,
+    cell: f64,
+    (columns, rows): (usize, usize),
+    most: f64,
+    mut take: impl FnMut(usize, f64),
+) {
+    /// Cells of a block along its side, which look at the same few images.
+    const BLOCK: usize = 16;
+    let half = |p: Point, by: Affine| 0.5 * p.distance(by * p);
+    let middle = |x: f64, y: f64| origin + cell * Vec2::new(x, y);
+    let radius = 0.5 * BLOCK as f64 * cell * std::f64::consts::SQRT_2;
+    for y0 in (0..rows).step_by(BLOCK) {
+        for x0 in (0..columns).step_by(BLOCK) {
+            let center = middle((x0 + BLOCK / 2) as f64, (y0 + BLOCK / 2) as f64);
+            let all: Vec<f64> = images[1..].iter().map(|&by| half(center, by)).collect();
+            // No image comes nearer by more than the way from the centre.
+            let least = all.iter().copied().fold(most, f64::min);
+            let near: Vec<Affine> =
+                (1..images.len()).filter(|i| all[i - 1] <= least + 2.0 * radius).map(|i| images[i]).collect();
+            for y in y0..(y0 + BLOCK).min(rows) {
+                for x in x0..(x0 + BLOCK).min(columns) {
+                    let p = middle(x as f64 + 0.5, y as f64 + 0.5);
+                    let wall = near.iter().map(|&by| half(p, by)).fold(most, f64::min);
+                    take(y * columns + x, wall);
+                }
+            }
+        }
     }
 }
 

@@ -3,13 +3,14 @@
 use super::Params;
 use super::piece::{Kind, Proxy};
 use super::rules::{Rules, Shared, corners};
+use super::section::Section;
 use super::space::Circle;
-use super::symmetry::{Extent, Symmetry};
+use super::symmetry::Extent;
 use super::world::{self, World};
-use crate::geom::boolean::Contour;
+use crate::geom::boolean::{self, Contour};
 use crate::geom::region::Region;
 use crate::shapes::Shapes;
-use kurbo::{Affine, CubicBez, ParamCurve, PathSeg, Point, Shape, Vec2};
+use kurbo::{Affine, CubicBez, ParamCurve, PathSeg, Point, Rect, Shape, Vec2};
 use rinceau_format::Scene;
 
 /// Seeds of one container at most.
@@ -27,31 +28,64 @@ pub(super) struct Start<'a> {
 }
 
 impl Start<'_> {
-    /// Where ornament may be; `None` if there is no room.
-    pub fn region(&self, symmetry: &Symmetry) -> Option<Region> {
-        let unit = self.unit;
+    /// Where proxies may be in a section, wherever it has a place; `None` if there is no room.
+    pub fn region(&self, section: &Section) -> Option<Region> {
         let px = self.scene.px_per_unit;
         let edge = match self.params.edge.to_user(px) {
-            0.0 => 0.5 * unit,
+            0.0 => 0.5 * self.unit,
             edge => edge,
         };
         let gap = match self.params.gap.to_user(px) {
-            0.0 => unit,
+            0.0 => self.unit,
             gap => gap,
         };
-        let region = match symmetry.extent {
-            Extent::Band => self.shapes.free_repeated(self.index, gap, edge),
+        self.shared(section, section.domain, gap, edge)
+    }
+
+    /// What nothing that is drawn may leave; `None` where nothing ends.
+    pub fn outline(&self, section: &Section) -> Option<Region> {
+        // What is drawn may reach from a section into the next.
+        let around = |domain: Rect| domain.inflate(domain.width(), domain.height());
+        match section.symmetry.extent {
+            Extent::Plane => None,
+            _ => self.shared(section, section.domain.map(around), 0.0, 0.0),
+        }
+    }
+
+    /// What all places of a section have in common, its images included, without what is so near to the
+    /// outline or to something fixed.
+    fn shared(&self, section: &Section, domain: Option<Rect>, gap: f64, edge: f64) -> Option<Region> {
+        let extent = section.symmetry.extent;
+        let free = match (extent, domain) {
+            (Extent::Band, None) => self.shapes.free_repeated(self.index, gap, edge),
             _ => self.shapes.free(self.index, gap, edge),
         }?;
-        let small: Vec<Contour> = region
-            .contours()
-            .iter()
-            .map(|contour| contour.iter().map(|p| (p.to_vec2() / unit).to_point()).collect())
-            .collect();
-        match symmetry.extent {
-            Extent::Plane => Region::new(small),
-            _ => Region::new(symmetry.shared(&small)),
+        let free = self.in_units(free.contours());
+        let Some(domain) = domain else {
+            return match extent {
+                Extent::Plane => Region::new(free),
+                _ => Region::new(section.symmetry.shared(&free)),
+            };
+        };
+        let (low, high) = (domain.origin(), Point::new(domain.x1, domain.y1));
+        let mut shared = vec![vec![low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)]];
+        for place in &section.places {
+            let back = place.inverse();
+            let moved: Vec<Contour> =
+                free.iter().map(|contour| contour.iter().map(|&p| back * p).collect()).collect();
+            shared = boolean::intersection(&shared, &boolean::simplified(&moved, true));
         }
+        Region::new(section.symmetry.shared(&shared))
+    }
+
+    /// The container in units of the rules.
+    pub fn shape(&self) -> Vec<Contour> {
+        self.in_units(&self.shapes.containers[self.index])
+    }
+
+    fn in_units(&self, shape: &[Contour]) -> Vec<Contour> {
+        let small = |p: &Point| (p.to_vec2() / self.unit).to_point();
+        shape.iter().map(|contour| contour.iter().map(small).collect()).collect()
     }
 
     /// Where growth starts: marked seeds, or as the artist wishes if nothing else

@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 pub const MOST_IMAGES: usize = 4000;
 
 /// How an ornament repeats.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub(super) enum Extent {
     /// Within its shape.
     Panel,
@@ -178,6 +178,19 @@ impl Symmetry {
         let cosets =
             rosette(name).map_or(vec![Affine::IDENTITY], |maps| maps.into_iter().map(about).collect());
         Symmetry { extent: Extent::Panel, cosets, lattice: Vec::new(), note: None }
+    }
+
+    /// A mirror along the diagonal of a square, from its upper left corner.
+    pub fn diagonal(square: Rect) -> Self {
+        let to_center = Affine::translate(square.center().to_vec2());
+        let mirror = to_center * Affine::new([0.0, 1.0, 1.0, 0.0, 0.0, 0.0]) * to_center.inverse();
+        let cosets = vec![Affine::IDENTITY, mirror];
+        Symmetry { extent: Extent::Panel, cosets, lattice: Vec::new(), note: None }
+    }
+
+    /// The symmetries that are no translations; the first changes nothing.
+    pub fn cosets(&self) -> &[Affine] {
+        &self.cosets
     }
 
     /// A shape with the symmetries that are no translations: what of it all images share.

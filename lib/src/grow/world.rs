@@ -63,6 +63,8 @@ pub(super) struct World {
     /// Where ornament may be; `None` where it repeats all over the plane.
     pub region: Option<Region>,
     pub bounds: Rect,
+    /// What rules call the section of the container that this is.
+    pub section: &'static str,
     /// The symmetries of the ornament; the first changes nothing.
     images: Vec<Affine>,
     firing: u32,
@@ -102,6 +104,7 @@ impl World {
             space,
             region,
             bounds,
+            section: "whole",
             images: vec![Affine::IDENTITY],
             firing: 0,
             serial: 0,

@@ -8,7 +8,7 @@ use rinceau::geom::near::segment_segment;
 use rinceau::geom::region::Region;
 use rinceau::params::Values;
 use rinceau::{Deadline, GENERATORS, Generator};
-use rinceau_format::{Artwork, Document, Error, Item, Recipe, Scene, Selection};
+use rinceau_format::{Artwork, Document, Error, Item, Part, Recipe, Scene, Selection};
 use std::path::PathBuf;
 
 /// Written coordinates are rounded to three decimals, and outlines are flattened for the
@@ -152,9 +152,29 @@ pub fn distance(a: &[Vec<Point>], b: &[Vec<Point>], reach: f64) -> f64 {
 /// Panics unless a piece lies inside a container.
 pub fn assert_inside(name: &str, piece: &[Vec<Point>], container: &Region) {
     for (p, q) in piece.iter().flat_map(|contour| sides(contour)) {
-        assert!(container.contains(p), "{name} leaves the container at {p:?}");
-        let way = container.ray(p, (q - p).normalize(), p.distance(q));
-        assert!(way >= p.distance(q) - SLACK, "{name} leaves the container after {p:?}");
+        assert_side_inside(name, (p, q), container);
+    }
+}
+
+fn assert_side_inside(name: &str, (p, q): (Point, Point), container: &Region) {
+    assert!(container.contains(p), "{name} leaves the container at {p:?}");
+    let way = container.ray(p, (q - p).normalize(), p.distance(q));
+    assert!(way >= p.distance(q) - SLACK, "{name} leaves the container after {p:?}");
+}
+
+/// Panics unless a part, its stroke as well, lies inside a container.
+pub fn assert_drawn_inside(name: &str, part: &Part, container: &Region) {
+    let half = 0.5 * part.style.stroke_width().unwrap_or(0.0);
+    for subpath in flatten(&(part.transform * part.path.clone()), FLATNESS) {
+        let is_area = subpath.closed || part.style.is_filled();
+        let ends = sides(&subpath.points).take(subpath.points.len() - usize::from(!is_area));
+        ends.for_each(|side| assert_side_inside(name, side, container));
+        for &p in subpath.points.iter().filter(|_| half > 0.0) {
+            assert!(
+                container.distance(p, half) > half - SLACK,
+                "{name}: its stroke leaves the container at {p:?}"
+            );
+        }
     }
 }
 

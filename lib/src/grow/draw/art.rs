@@ -104,8 +104,14 @@ impl Art {
         self.parts.iter().map(|(path, style)| (pose * path.clone(), style)).collect()
     }
 
-    /// Along a line: as wide as asked for, as wide as the place, or in proportion.
-    pub fn along(&self, line: &BezPath, width: f64, widths: Option<&[f64]>) -> Vec<(BezPath, &Style)> {
+    /// Along a line, with a share of its width: as wide as asked for, as wide as the place, or in proportion.
+    pub fn along(
+        &self,
+        line: &BezPath,
+        width: f64,
+        widths: Option<&[f64]>,
+        share: f64,
+    ) -> Vec<(BezPath, &Style)> {
         const FINEST: f64 = 2e-3;
         let points: Vec<Point> =
             flatten(line, FINEST).into_iter().flat_map(|subpath| subpath.points).collect();
@@ -118,10 +124,10 @@ impl Art {
         let scale = match widths {
             Some(widths) => {
                 let widest = widths.iter().copied().fold(0.0, f64::max);
-                Profile::constant(widest / self.half_width)
+                Profile::constant(share * widest / self.half_width)
             }
-            None if width > 0.0 => Profile::constant(0.5 * width / self.half_width),
-            None => Profile::constant(total),
+            None if width > 0.0 => Profile::constant(share * 0.5 * width / self.half_width),
+            None => Profile::constant(share * total),
         };
         let turns = curvature(&spine);
         let side = |sign: f64| {

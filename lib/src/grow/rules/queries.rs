@@ -360,7 +360,10 @@ fn register_numbers(engine: &mut Engine, shared: &Shared) {
     });
     let state = shared.clone();
     engine.register_fn("panel", move || -> Map {
-        let bounds = state.borrow().world.bounds;
+        let (bounds, section) = {
+            let world = &state.borrow().world;
+            (world.bounds, world.section)
+        };
         let sides = [
             ("left", bounds.x0),
             ("top", bounds.y0),
@@ -371,6 +374,7 @@ fn register_numbers(engine: &mut Engine, shared: &Shared) {
         ];
         let mut map: Map = sides.into_iter().map(|(name, side)| (name.into(), side.into())).collect();
         map.insert("center".into(), Dynamic::from(bounds.center()));
+        map.insert("section".into(), section.into());
         map
     });
 }

@@ -47,7 +47,8 @@ impl World {
         false
     }
 
-    /// True if what grows at once touches its own images, elsewhere than at the parent.
+    /// True if what grows at once touches its own images, elsewhere than at the parent. A disc in a special
+    /// position, on a mirror or an axis, is its own image and does not.
     pub(super) fn meets_itself(&self, all: &[Vec<Piece>], parent: u32) -> bool {
         if self.images.len() == 1 {
             return false;
@@ -69,13 +70,19 @@ impl World {
             }
             pieces.iter().any(|(a, _)| {
                 let moved = a.moved(by);
+                let is_itself = |b: &Piece| match (b, &moved) {
+                    (Piece::Disc(one, _), Piece::Disc(two, _)) => {
+                        std::ptr::eq(b, *a) && one.distance(*two) < slack
+                    }
+                    _ => false,
+                };
                 let around = moved.bounds().inflate(slack, slack);
                 pieces.iter().any(|(b, bounds)| {
                     let touches = bounds.x0 <= around.x1
                         && around.x0 <= bounds.x1
                         && bounds.y0 <= around.y1
                         && around.y0 <= bounds.y1;
-                    touches && b.apart(&moved) < slack && !is_joint(contact(b, &moved))
+                    touches && b.apart(&moved) < slack && !is_itself(b) && !is_joint(contact(b, &moved))
                 })
             })
         })
