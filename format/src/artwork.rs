@@ -1,19 +1,29 @@
 //! Plain data: what a generator made, in drawing order.
 
+use crate::json;
 use crate::style::Style;
 use kurbo::{Affine, BezPath};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
 /// One painted shape.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Part {
     /// In its own coordinates.
+    #[serde(with = "json::path")]
+    #[schemars(with = "String")]
     pub path: BezPath,
     /// From its own coordinates to user units of the root.
+    #[serde(default, with = "json::affine", skip_serializing_if = "json::is_identity")]
+    #[schemars(with = "[f64; 6]")]
     pub transform: Affine,
     /// Its paint; widths are in its own coordinates.
+    #[serde(with = "json::style")]
+    #[schemars(with = "BTreeMap<String, String>")]
     pub style: Style,
 }
 

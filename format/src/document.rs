@@ -44,6 +44,13 @@ impl Document {
         Ok(document)
     }
 
+    /// A drawing of nothing but what a scene knows; it reads as that scene.
+    ///
+    /// Errors: a scene beyond the limits of a drawing.
+    pub fn from_scene(scene: &Scene) -> Result<Self, Error> {
+        Document::from_bytes(crate::write::scene::drawing(scene).into_bytes())
+    }
+
     /// The drawing as it is stored, uncompressed.
     pub fn to_bytes(&self) -> Vec<u8> {
         encoding::encode(&self.text, self.encoding)

@@ -52,7 +52,7 @@ fn rule_sets(xml: &roxmltree::Document) -> Vec<RuleSet> {
     xml.descendants().filter(is_rules).map(rule_set).collect()
 }
 
-pub(crate) use forms::shift_of_use;
+pub(crate) use forms::{set_roots, shift_of_use};
 pub(crate) use resolver::{Resolver, own_transform, transform_origin};
 
 /// The error for an id that nothing has.

@@ -132,7 +132,8 @@ fn poly(points: &str, closed: bool) -> Result<BezPath, String> {
 }
 
 /// Path data to Bézier segments. Err names the broken place.
-fn path(data: &str) -> Result<BezPath, String> {
+/// Path data. Errors: what is wrong, in words.
+pub(crate) fn path(data: &str) -> Result<BezPath, String> {
     let mut builder = PathBuilder::default();
     if data.trim() == "none" {
         return Ok(builder.path);

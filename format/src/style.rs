@@ -4,12 +4,15 @@ use crate::css::{self, Sheet};
 use crate::units::{Axis, Units};
 use crate::xml::PlainAttribute;
 use roxmltree::Node;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Which inside a path fills.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
 pub enum FillRule {
     /// Any winding but zero.
     #[default]
@@ -137,6 +140,38 @@ impl Style {
         if self.properties.contains_key(name) {
             Arc::make_mut(&mut self.properties).remove(name);
         }
+    }
+
+    /// What a copy carries along, by the names of CSS: paint, and `opacity`.
+    pub fn properties(&self) -> impl Iterator<Item = (&'static str, String)> + '_ {
+        let opacity = (self.opacity < 1.0).then(|| ("opacity", self.opacity.to_string()));
+        let carried = |&(name, _): &(&'static str, String)| {
+            name == "vector-effect" || INHERITED.contains(&name) && !matches!(name, "color" | "visibility")
+        };
+        let properties = self.properties.iter().map(|(&name, value)| (name, value.to_string()));
+        properties.filter(carried).chain(opacity)
+    }
+
+    /// A style of such properties. Errors: a name that is none of them, or an opacity that is no number;
+    /// what is wrong, in words.
+    pub fn from_properties(properties: &BTreeMap<String, String>) -> Result<Self, String> {
+        let mut style = Style::initial();
+        for (name, value) in properties {
+            let is_carried = name == "vector-effect"
+                || INHERITED.contains(&name.as_str()) && !matches!(name.as_str(), "color" | "visibility");
+            match name.as_str() {
+                _ if value.len() > LONGEST_VALUE || value.contains([';', '{', '}']) => {
+                    return Err(format!("the value of '{name}' is none of CSS"));
+                }
+                "opacity" => {
+                    let opacity = value.parse().ok().filter(|opacity| (0.0..=1.0).contains(opacity));
+                    style.opacity = opacity.ok_or_else(|| format!("'{value}' is no opacity"))?;
+                }
+                name if is_carried => style.set(name, value),
+                name => return Err(format!("'{name}' is no property of paint")),
+            }
+        }
+        Ok(style)
     }
 
     /// Which inside is filled.

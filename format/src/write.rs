@@ -1,6 +1,7 @@
 //! Artwork to a result layer.
 
 mod page;
+pub(crate) mod scene;
 mod stream;
 
 use crate::artwork::{Artwork, Group, Item, Part, Symbol, SymbolItem};

@@ -3,29 +3,13 @@
 use super::Document;
 use super::edit::{splice, start_tag_end};
 use crate::error::Error;
+use crate::look::{self, ARROW, appearance};
 use crate::read::{Resolver, unknown_id};
 use crate::vocabulary::{NAMESPACE, Role};
 use crate::write::{attribute, escaped};
 use crate::xml::PlainAttribute;
 use roxmltree::Node;
 use std::ops::Range;
-
-/// What a mark looks like on the canvas, after the diagrams of the FLOWPAK paper (F-011).
-fn appearance(role: Role) -> &'static [(&'static str, &'static str)] {
-    match role {
-        Role::Container => &[("fill", "none"), ("stroke", "#000000")],
-        Role::Guide | Role::Spine => &[("fill", "none"), ("stroke", "#ff0000")],
-        Role::Stem | Role::Boundary => &[("fill", "none"), ("stroke", "#0000ff")],
-        Role::FixedSpine => &[("fill", "none"), ("stroke", "#00aa00")],
-        Role::Fixed => &[("fill", "#00aa00")],
-        Role::Seed | Role::Tack => &[("fill", "#ff7f00")],
-        Role::Spray => &[("fill", "none"), ("stroke-opacity", "0.3")],
-        Role::Element | Role::Form | Role::Clone | Role::Reference | Role::Rules => &[],
-    }
-}
-
-/// Id of the arrow head that shows which way a guide runs.
-const ARROW: &str = "rinceau-arrow";
 
 impl Document {
     /// Gives the objects a role: attribute, class, and the colours of the papers' diagrams.
@@ -145,9 +129,7 @@ impl Document {
         let p = name.strip_suffix("svg").unwrap_or("");
         let at = range.start + element.rfind("</").unwrap_or(element.len());
         let newline = self.newline();
-        let marker = format!(
-            "{newline}<{p}defs><{p}marker id=\"{ARROW}\" orient=\"auto\" markerWidth=\"6\" markerHeight=\"6\" refX=\"4\" refY=\"3\"><{p}path d=\"M0,0L6,3L0,6Z\" style=\"fill:#ff0000\"/></{p}marker></{p}defs>"
-        );
+        let marker = format!("{newline}{}", look::arrow(p));
         (!closes).then_some((at..at, marker))
     }
 }

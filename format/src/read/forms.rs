@@ -55,7 +55,6 @@ pub(super) fn resolve(
         .collect();
     let forms = Forms { resolver, by_node, frames };
     let is_any_selected = raw.iter().any(|form| form.selected);
-    let mut is_referred_to = vec![false; raw.len()];
     let mut resolved = Vec::with_capacity(raw.len());
     for (index, form) in raw.into_iter().enumerate() {
         let mut items = Vec::with_capacity(form.items.len());
@@ -72,7 +71,6 @@ pub(super) fn resolve(
                         }
                         replication => replication?,
                     };
-                    is_referred_to[replication.form] |= replication.form != index;
                     let again = same.iter().any(|&(form, transform, other)| {
                         form == replication.form
                             && other != target
@@ -88,16 +86,28 @@ pub(super) fn resolve(
         resolved.push(Form { source: form.source, is_root: form.selected, items, overrides: form.overrides });
     }
     if !is_any_selected {
-        for (form, referred) in resolved.iter_mut().zip(&is_referred_to) {
-            form.is_root = !referred;
-        }
-        // In a ring of forms the first one drawn is meant.
-        if let Some(first) = resolved.first_mut().filter(|_| is_referred_to.iter().all(|&referred| referred))
-        {
-            first.is_root = true;
-        }
+        set_roots(&mut resolved);
     }
     Ok(resolved)
+}
+
+/// Which forms are to be drawn for their own sake: those that no other has a clone of.
+pub(crate) fn set_roots(forms: &mut [Form]) {
+    let mut is_referred_to = vec![false; forms.len()];
+    for (index, form) in forms.iter().enumerate() {
+        for item in &form.items {
+            if let FormItem::Clone(clone) = item {
+                is_referred_to[clone.form] |= clone.form != index;
+            }
+        }
+    }
+    for (form, referred) in forms.iter_mut().zip(&is_referred_to) {
+        form.is_root = !referred;
+    }
+    // In a ring of forms the first one drawn is meant.
+    if let Some(first) = forms.first_mut().filter(|_| is_referred_to.iter().all(|&referred| referred)) {
+        first.is_root = true;
+    }
 }
 
 struct Forms<'r, 'a, 'i> {
