@@ -1,10 +1,13 @@
 //! A drawing: its text, and edits that touch nothing but what is ours.
 
+mod clean;
+mod diagram;
 mod edit;
 mod flip;
 mod history;
 mod layers;
 mod mark;
+mod problems;
 mod transform;
 
 use crate::encoding::{self, Encoding};
@@ -17,6 +20,7 @@ use roxmltree::ParsingOptions;
 
 pub(crate) use history::forms_of_step;
 pub use layers::Layer;
+pub use problems::Problem;
 
 /// A drawing. Every edit returns a new one; bytes outside the edit are the source's own.
 #[derive(Clone, Debug)]
@@ -51,9 +55,24 @@ impl Document {
         Document::from_bytes(crate::write::scene::drawing(scene).into_bytes())
     }
 
+    /// A scene as a diagram in the colours of the FLOWPAK paper, without marks: what
+    /// [`Document::with_roles_by_colour`] reads. Also what has no colour there and is left out, in words.
+    ///
+    /// Errors: a scene beyond the limits of a drawing.
+    pub fn diagram(scene: &Scene) -> Result<(Self, Vec<String>), Error> {
+        let (text, lost) = crate::write::scene::diagram(scene);
+        Ok((Document::from_bytes(text.into_bytes())?, lost))
+    }
+
     /// The drawing as it is stored, uncompressed.
     pub fn to_bytes(&self) -> Vec<u8> {
         encoding::encode(&self.text, self.encoding)
+    }
+
+    /// The drawing in UTF-8, whatever its encoding, without a declaration that says otherwise.
+    pub fn to_utf8(&self) -> Vec<u8> {
+        let declared = self.text.starts_with("<?xml").then(|| self.text.find("?>")).flatten();
+        self.text.as_bytes()[declared.map_or(0, |end| end + 2)..].to_vec()
     }
 
     /// The drawing's text.

@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// A place in the drawing's text, counted as editors count: from 1, columns in characters.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Position {
     /// Line, from 1.
     pub line: usize,
@@ -92,6 +92,16 @@ impl Error {
     /// The reason code, stable across versions, such as `open-container`.
     pub fn code(&self) -> &'static str {
         self.code
+    }
+
+    /// What is wrong, without a full stop.
+    pub fn sentence(&self) -> &str {
+        &self.sentence
+    }
+
+    /// What to do, without a full stop.
+    pub fn remedy(&self) -> &str {
+        &self.remedy
     }
 
     /// Where in the drawing, if it is anywhere.

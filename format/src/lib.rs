@@ -19,6 +19,7 @@
 //! The format itself is specified in `SPEC.md` beside this crate.
 
 mod artwork;
+mod cfdg;
 mod css;
 mod document;
 mod encoding;
@@ -40,7 +41,7 @@ mod write;
 mod xml;
 
 pub use artwork::{Artwork, Group, Item, Part, Pieces, Step, Stream, Symbol, SymbolItem};
-pub use document::{Document, Layer};
+pub use document::{Document, Layer, Problem};
 pub use error::{Error, Position};
 pub use limits::Limits;
 pub use number::{decimals_for, path_data, write_number};

@@ -11,12 +11,13 @@ mod role;
 mod walk;
 
 use crate::document::forms_of_step;
-use crate::error::Error;
+use crate::error::{Error, Position};
 use crate::limits::Limits;
 use crate::scene::{RuleSet, Scene, Selection};
 use crate::style::Style;
 use crate::vocabulary::NAMESPACE;
 use crate::xml::PlainAttribute;
+use std::collections::HashSet;
 
 /// Reads every annotated (or selected) object of a parsed drawing.
 ///
@@ -25,6 +26,16 @@ pub(crate) fn scene(
     xml: &roxmltree::Document,
     selection: &Selection,
     limits: &Limits,
+) -> Result<Scene, Error> {
+    scene_without(xml, selection, limits, &HashSet::new())
+}
+
+/// The same as if the objects at some places were not there.
+pub(crate) fn scene_without(
+    xml: &roxmltree::Document,
+    selection: &Selection,
+    limits: &Limits,
+    passed: &HashSet<Position>,
 ) -> Result<Scene, Error> {
     let mut resolver = Resolver::new(xml, limits)?;
     let mut selected = Vec::new();
@@ -36,7 +47,8 @@ pub(crate) fn scene(
         selected.push(form.unwrap_or(node));
     }
     resolver.mark(&selected);
-    let mut scene = walk::walk(&resolver, selected.iter().map(roxmltree::Node::id).collect())?;
+    let selected = selected.iter().map(roxmltree::Node::id).collect();
+    let mut scene = walk::walk(&resolver, selected, passed)?;
     scene.rules = rule_sets(xml);
     Ok(scene)
 }
@@ -53,7 +65,7 @@ fn rule_sets(xml: &roxmltree::Document) -> Vec<RuleSet> {
 }
 
 pub(crate) use forms::{set_roots, shift_of_use};
-pub(crate) use resolver::{Resolver, own_transform, transform_origin};
+pub(crate) use resolver::{Resolver, has_mark, own_transform, transform_origin};
 
 /// The error for an id that nothing has.
 pub(crate) fn unknown_id(id: &str) -> Error {

@@ -12,6 +12,7 @@
 //! | [`vine`] | Xu, Mould: *Magnetic curves*, 2009, and an article that adds clip art |
 
 pub mod arrange;
+mod faults;
 pub mod field;
 pub mod generate;
 pub mod geom;
@@ -27,6 +28,7 @@ pub mod shapes;
 pub mod tack;
 pub mod vine;
 
+pub use faults::faults;
 pub use generate::{GENERATORS, Generator, generate};
 pub use params::{ParamSpec, Values};
 pub use progress::{Deadline, Progress};

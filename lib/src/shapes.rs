@@ -115,6 +115,12 @@ impl Shapes {
     }
 }
 
+/// What is wrong with each container, as a generator that fills it would say.
+pub fn faults(scene: &Scene) -> Vec<Error> {
+    let tolerance = bounds_of(scene).size().max_side() * FLATNESS;
+    scene.containers.iter().filter_map(|container| silhouette(container, tolerance).err()).collect()
+}
+
 fn bounds_of(scene: &Scene) -> Rect {
     let containers = scene
         .containers

@@ -1,5 +1,6 @@
 //! The command line, made from the parameter tables.
 
+use crate::{convert, render};
 use clap::builder::ValueParser;
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use rinceau::GENERATORS;
@@ -77,8 +78,22 @@ pub fn command() -> Command {
         )
         .subcommand(
             Command::new("check")
-                .about("Say what the marks in a drawing mean, and what is wrong with them")
-                .arg(input()),
+                .about("Say what the marks in a drawing mean, and everything that is wrong with them")
+                .arg(input())
+                .arg(
+                    Arg::new("json")
+                        .long("json")
+                        .action(ArgAction::SetTrue)
+                        .help("As JSON, for scripts; the exit code is 1 if there is an error"),
+                ),
+        )
+        .subcommand(convert())
+        .subcommand(
+            Command::new("render")
+                .hide(true)
+                .about("Renders a drawing; 'convert' calls it")
+                .arg(Arg::new("picture").required(true))
+                .arg(Arg::new("width").required(true).value_parser(clap::value_parser!(u32))),
         )
         .subcommand(
             Command::new("install").about("Install the Inkscape extension for this user").arg(
@@ -88,6 +103,42 @@ pub fn command() -> Command {
                     .value_parser(clap::value_parser!(std::path::PathBuf))
                     .help("Inkscape's user extensions folder, if it is not the usual one"),
             ),
+        )
+}
+
+fn convert() -> Command {
+    let switch = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
+    Command::new("convert")
+        .about("Write a drawing in another format")
+        .arg(input().required(true))
+        .arg(
+            Arg::new("out")
+                .value_name("OUTPUT")
+                .required(true)
+                .help("Where to write: .svg .svgz .json (the scene) .png .pdf .cfdg (recursive forms); '-' for standard output"),
+        )
+        .arg(
+            Arg::new("from")
+                .long("from")
+                .value_name("FORMAT")
+                .value_parser(convert::FROM)
+                .help("What the input is, if its name and content do not say: colours gives roles to a diagram by its inks (black outlines, red arrows, green shapes and paths)"),
+        )
+        .arg(
+            Arg::new("to")
+                .long("to")
+                .value_name("FORMAT")
+                .value_parser(convert::TO)
+                .help("What to write, if the name of the output does not say: colours draws the roles as such a diagram"),
+        )
+        .arg(switch("artwork-only").help("Leave out what is marked, hidden sublayers, recipes and all marks: the ornament to hand on"))
+        .arg(switch("flat").help("The artwork as nothing but paths in page units, for cutters and plotters: clones, text and transforms resolved"))
+        .arg(
+            Arg::new("width")
+                .long("width")
+                .value_name("PIXELS")
+                .value_parser(clap::value_parser!(u32).range(1..=i64::from(render::MOST_PIXELS)))
+                .help("Width of a PNG; that of the page if not given"),
         )
 }
 

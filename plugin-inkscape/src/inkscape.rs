@@ -2,11 +2,13 @@
 //! goes to standard output. Any text on standard error opens a dialog, and an empty output
 //! leaves the drawing as it is, so a failure writes the input back and one sentence.
 
+use crate::check::Check;
 use crate::run::{self, Job};
-use crate::{check, output, progress, update};
+use crate::unbroken;
+use crate::{convert, output, progress, update};
 use rinceau::params::Kind;
 use rinceau::{Error, GENERATORS, Values};
-use rinceau_format::{Document, Role, Selection};
+use rinceau_format::{Document, Role};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -25,15 +27,18 @@ pub fn called_by_inkscape(arguments: &[OsString]) -> bool {
 pub fn run(arguments: &[OsString]) -> ExitCode {
     let call = Call::parse(arguments);
     let file = call.file.clone();
+    let is_file_format = call.file_format().is_some();
     let result = output::read(file.as_deref())
-        .and_then(|input| call.result(input))
+        .and_then(|input| unbroken(|| call.result(input)))
         .and_then(|bytes| output::write(None, &bytes));
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             // The drawing goes back unchanged, whatever happened. It comes from the file again:
             // what was read of a drawing beyond the limit ends there.
-            let _ = file.map(|file| output::copy(&file));
+            if !is_file_format {
+                let _ = file.map(|file| output::copy(&file));
+            }
             fail(&error)
         }
     }
@@ -73,7 +78,17 @@ impl Call {
         call
     }
 
+    /// For what Inkscape opens or saves through us: from and to which format.
+    fn file_format(&self) -> Option<(&str, &str)> {
+        let from = self.tool.strip_prefix("open-").map(|format| (format, "svg"));
+        from.or_else(|| self.tool.strip_prefix("save-").map(|format| ("svg", format)))
+    }
+
     fn result(mut self, input: Vec<u8>) -> Result<Vec<u8>, Error> {
+        if let Some((from, to)) = self.file_format() {
+            // What a format lacks, its menu entry says; a message here would look like a failure.
+            return Ok(convert::converted(input, Some(from), to, convert::Finish::default())?.0);
+        }
         if let Some(role) = self.tool.strip_prefix("mark-") {
             if self.ids.is_empty() {
                 return Err(Error::new(
@@ -107,10 +122,8 @@ impl Call {
             return Ok(Document::from_bytes(input)?.with_resumed(id)?.to_bytes());
         }
         if self.tool == "check" {
-            let document = Document::from_bytes(input.clone())?;
-            let scene = document.scene(&Selection::default())?;
             // The dialog that standard error opens is what the artist asked for here.
-            eprintln!("{}", check::summary(&document, &scene)?);
+            eprintln!("{}", Check::new(&Document::from_bytes(input.clone())?)?.text(None));
             return Ok(input);
         }
         let generator = GENERATORS.iter().find(|generator| generator.name == self.tool).ok_or_else(|| {

@@ -89,7 +89,34 @@ pub fn all(binary: &str) -> Vec<(String, String)> {
             binary,
         ),
     ));
+    for (format, title, mime) in FILES {
+        files.push((format!("open-{format}.inx"), file_format("open", format, title, mime, binary)));
+        files.push((format!("save-{format}.inx"), file_format("save", format, title, mime, binary)));
+    }
     files
+}
+
+/// File formats that Inkscape opens and saves through us: ending, what its dialogs call it, and type.
+const FILES: &[(&str, &str, &str)] = &[
+    ("json", "Rinceau scene (*.json)", "application/json"),
+    ("cfdg", "Context Free grammar, recursive forms (*.cfdg)", "text/x-cfdg"),
+];
+
+/// A file format in Open or Save As.
+fn file_format(way: &str, format: &str, title: &str, mime: &str, binary: &str) -> String {
+    let tool = format!("{way}-{format}");
+    let mut inx = Inx::new(&tool, title);
+    inx.hidden("tool", &tool);
+    inx.0.start_element(if way == "open" { "input" } else { "output" });
+    inx.text("extension", &[], &format!(".{format}"));
+    inx.text("mimetype", &[], mime);
+    inx.text("filetypename", &[], title);
+    inx.text("filetypetooltip", &[], "What is marked in a drawing, and nothing else of it");
+    if way == "save" {
+        inx.text("dataloss", &[], "true");
+    }
+    inx.0.end_element();
+    inx.script(binary)
 }
 
 struct Inx(XmlWriter);
@@ -141,6 +168,10 @@ impl Inx {
         self.0.end_element();
         self.text("menu-tip", &[], tip);
         self.0.end_element();
+        self.script(binary)
+    }
+
+    fn script(mut self, binary: &str) -> String {
         self.0.start_element("script");
         // Without a space around it: it is the name of a file.
         self.text("command", &[("location", "inx")], binary);

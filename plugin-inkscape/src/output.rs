@@ -54,15 +54,11 @@ pub fn write_by(
         }
     };
     let result = match path {
-        Some(path) if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svgz")) => {
-            replace(path, |out| {
-                // No name and no time in the header: the same drawing is the same bytes.
-                let mut encoder =
-                    flate2::GzBuilder::new().mtime(0).write(out, flate2::Compression::default());
-                fill(&mut encoder)?;
-                encoder.finish().map(drop)
-            })
-        }
+        Some(path) if is_zipped(path) => replace(path, |out| {
+            let mut encoder = encoder(out);
+            fill(&mut encoder)?;
+            encoder.finish().map(drop)
+        }),
         Some(path) => replace(path, fill),
         None => {
             let mut out = io::stdout().lock();
@@ -79,6 +75,24 @@ pub fn write_by(
             "Check the folder, its permissions and the free space; nothing was changed",
         )
     })
+}
+
+/// True for a name whose file is compressed.
+pub fn is_zipped(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svgz"))
+}
+
+/// What a compressed file holds.
+pub fn zipped(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = encoder(Vec::new());
+    // Memory takes everything.
+    let _ = encoder.write_all(bytes);
+    encoder.finish().unwrap_or_default()
+}
+
+/// No name and no time in the header: the same drawing is the same bytes.
+fn encoder<W: Write>(out: W) -> flate2::write::GzEncoder<W> {
+    flate2::GzBuilder::new().mtime(0).write(out, flate2::Compression::default())
 }
 
 /// Copies a file of any size to standard output as it is.

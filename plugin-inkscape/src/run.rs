@@ -1,6 +1,6 @@
 //! The whole flow on one screen: text, document, scene, generate, artwork, layer, text.
 
-use crate::{check, install, output, progress, update};
+use crate::{check, convert, install, output, progress, render, update};
 use clap::ArgMatches;
 use rinceau::params::Kind;
 use rinceau::tack::Tacked;
@@ -155,7 +155,14 @@ pub fn command(matches: &ArgMatches) -> Result<(), Error> {
             }
             output::write(path(matches, "out"), &document.to_bytes())
         }
-        "check" => check::run(&Document::from_bytes(output::read(input(matches))?)?),
+        "check" => check::run(input(matches), matches.get_flag("json")),
+        "convert" => convert::run(matches, input(matches), path(matches, "out")),
+        "render" => {
+            let width = matches.get_one::<u32>("width").copied().unwrap_or(0);
+            let picture = matches.get_one::<String>("picture").map_or("png", String::as_str);
+            render::work(picture, width)
+                .map_err(|what| Error::new("cannot-render", what, "Draw it otherwise"))
+        }
         "install" => install::install(matches.get_one::<PathBuf>("dir").map(PathBuf::as_path)),
         name => match GENERATORS.iter().find(|generator| generator.name == name) {
             Some(generator) => generator_command(generator, matches),

@@ -593,14 +593,14 @@ mod check {
         page 200.00 x 200.00, one unit is 1.0000 px
         2:1: guide 'sun'
         3:1: element 'leaf'
-        3:1: the element 'leaf' has no spine, so nothing can place it
+        nothing is marked as container. Select a closed shape when you run a generator, or mark one.
         2:44: rinceau:role says 'guide' but the class at 2:18 says 'container'; the attribute is used
+        3:1: the element 'leaf' has no spine, so nothing can place it. Draw a straight line from its base to its tip in its group, and mark that as spine.
         4:1: the spine 'lost' is in no element and is not used
-        nothing is marked as container: select a closed shape when you run a generator, or mark one
         ");
         insta::assert_snapshot!(rinceau(["check"]).input(svg("")).succeed().text(), @"
         page 200.00 x 200.00, one unit is 1.0000 px
-        nothing is marked as container: select a closed shape when you run a generator, or mark one
+        nothing is marked as container. Select a closed shape when you run a generator, or mark one.
         ");
     }
 
@@ -618,7 +618,8 @@ mod check {
     fn fails_on_what_cannot_be_used() {
         let done = rinceau(["check"]).input(svg("<g rinceau:role=\"oak\"/>")).done();
         assert_eq!(done.code, Some(1));
-        assert!(done.stderr.ends_with("[unknown-role]\n"), "{}", done.stderr);
+        assert!(done.text().contains("2:1: error: 'oak' is not a role"), "{}", done.text());
+        assert!(done.stderr.ends_with("[problems]\n"), "{}", done.stderr);
     }
 }
 

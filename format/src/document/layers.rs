@@ -334,7 +334,7 @@ impl Document {
 }
 
 /// Nodes of result layers, outermost only.
-fn result_nodes<'a, 'i>(xml: &'a roxmltree::Document<'i>) -> Vec<Node<'a, 'i>> {
+pub(super) fn result_nodes<'a, 'i>(xml: &'a roxmltree::Document<'i>) -> Vec<Node<'a, 'i>> {
     let mut nodes: Vec<Node> = Vec::new();
     for node in xml.descendants().filter(|node| node.attribute((NAMESPACE, "result")).is_some()) {
         if nodes.last().is_none_or(|last| node.range().start >= last.range().end) {
@@ -344,7 +344,7 @@ fn result_nodes<'a, 'i>(xml: &'a roxmltree::Document<'i>) -> Vec<Node<'a, 'i>> {
     nodes
 }
 
-fn read_recipe(document: &Document, node: Node) -> Result<Recipe, Error> {
+pub(super) fn read_recipe(document: &Document, node: Node) -> Result<Recipe, Error> {
     let get = |name: &str| node.attribute((NAMESPACE, name));
     let broken = |what: &str| {
         Error::new(

@@ -30,7 +30,8 @@ impl Document {
             self.check_verbatim(xml.root_element())?;
             let prefix = if role.is_some() { self.declare(xml, &mut edits) } else { String::new() };
             for &node in &nodes {
-                self.mark(node, role, &prefix, &mut edits)?;
+                let style = role.map(|role| marked_style(node.plain("style").unwrap_or(""), role));
+                self.put_role(node, role, &prefix, style, &mut edits)?;
             }
             if role == Some(Role::Guide) && resolver.by_id(ARROW, None)?.is_none() {
                 edits.extend(self.arrow(xml));
@@ -65,11 +66,13 @@ impl Document {
         prefix
     }
 
-    fn mark(
+    /// Edits that set or clear the role of an object, and its style if there is one.
+    pub(super) fn put_role(
         &self,
         node: Node,
         role: Option<Role>,
         prefix: &str,
+        style: Option<String>,
         edits: &mut Vec<(Range<usize>, String)>,
     ) -> Result<(), Error> {
         self.check_verbatim(node)?;
@@ -107,8 +110,7 @@ impl Document {
         let class =
             others.into_iter().map(str::to_owned).chain(role.map(Role::class)).collect::<Vec<_>>().join(" ");
         put(find(None, "class"), "class", Some(class).filter(|class| !class.is_empty()));
-        if let Some(role) = role {
-            let style = marked_style(node.plain("style").unwrap_or(""), role);
+        if let Some(style) = style {
             put(find(None, "style"), "style", Some(style).filter(|style| !style.is_empty()));
         }
         if !fresh.is_empty() {

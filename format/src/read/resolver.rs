@@ -167,7 +167,7 @@ fn places(xml: &Document) -> Vec<u32> {
 }
 
 /// True if the node itself has a role, by attribute or class.
-fn has_mark(node: Node) -> bool {
+pub(crate) fn has_mark(node: Node) -> bool {
     node.attribute((NAMESPACE, "role")).is_some()
         || node.plain("class").is_some_and(|class| class.contains("rinceau-"))
 }

@@ -4,7 +4,7 @@ use super::collect::{Drawn, Gathering, Situation};
 use super::forms::shift_of_use;
 use super::resolver::{Resolver, is_svg, nested_viewport, own_transform};
 use crate::artwork::Part;
-use crate::error::Error;
+use crate::error::{Error, Position};
 use crate::scene::{Live, Scene, When};
 use crate::style::Style;
 use crate::units::{Axis, Units, mean_scale};
@@ -53,6 +53,8 @@ struct Place<'a, 'i> {
 struct Walk<'r, 'a, 'i> {
     resolver: &'r Resolver<'a, 'i>,
     selection: HashSet<NodeId>,
+    /// Places of objects that are passed over.
+    passed: &'r HashSet<Position>,
     stack: Vec<Visit<'a, 'i>>,
     gathering: Gathering<'r, 'a, 'i>,
     /// Targets of the `<use>` elements around, to find clones that contain themselves.
@@ -74,13 +76,18 @@ struct Counts {
     texts: usize,
 }
 
-/// Walks the drawing once.
-pub(super) fn walk(resolver: &Resolver, selection: HashSet<NodeId>) -> Result<Scene, Error> {
+/// Walks the drawing once, past the objects at some places.
+pub(super) fn walk(
+    resolver: &Resolver,
+    selection: HashSet<NodeId>,
+    passed: &HashSet<Position>,
+) -> Result<Scene, Error> {
     let root = resolver.xml.root_element();
     let units = Units { viewport: resolver.view.size(), em: 16.0 };
     let mut walk = Walk {
         resolver,
         selection,
+        passed,
         stack: Vec::new(),
         gathering: Gathering::new(resolver),
         uses: Vec::new(),
@@ -144,6 +151,9 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
         let name = node.tag_name().name();
         let is_result = node.attribute((NAMESPACE, "result")).is_some();
         if !is_svg(&node, name) || is_result || is_never_drawn(name) || self.is_other_step(node) {
+            return Ok(());
+        }
+        if !self.passed.is_empty() && self.passed.contains(&self.resolver.position(node)) {
             return Ok(());
         }
         self.count(node)?;

@@ -14,33 +14,42 @@ use std::fmt::Write;
 /// The text of a drawing that reads as this scene, number for number. Marked objects look as
 /// [`Document::with_role`](crate::Document::with_role) makes them look, but for what is drawn in them.
 pub(crate) fn drawing(scene: &Scene) -> String {
-    let mut out = Drawing::default();
+    let mut out = Drawing { is_marked: true, ..Drawing::default() };
     if !scene.forms.is_empty() {
         json::each_source(&mut scene.clone(), |source| {
             out.taken.insert(source.id.clone());
         });
     }
-    let view = scene.view;
-    let (wide, tall) = (view.width() * scene.px_per_unit, view.height() * scene.px_per_unit);
-    let _ = writeln!(
-        out.text,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
-         xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" xmlns:rinceau=\"{NAMESPACE}\" \
-         width=\"{wide}\" height=\"{tall}\" viewBox=\"{} {} {} {}\">",
-        view.x0,
-        view.y0,
-        view.width(),
-        view.height()
-    );
-    out.all(scene);
-    out.text.push_str("</svg>\n");
-    out.text
+    out.page(scene, Drawing::all)
+}
+
+/// A scene as a diagram without marks, in which colours tell what is what; and what is left out, in words.
+pub(crate) fn diagram(scene: &Scene) -> (String, Vec<String>) {
+    let text = Drawing::default().page(scene, Drawing::inks);
+    let others = [
+        ("stems", scene.stems.len()),
+        ("seeds", scene.seeds.len()),
+        ("tacks", scene.tacks.len()),
+        ("boundaries", scene.boundaries.len()),
+        ("sprays", scene.sprays.len()),
+        ("forms", scene.forms.len()),
+        ("references", scene.references.len()),
+        ("rules", scene.rules.len()),
+    ];
+    let lost = others.into_iter().filter(|(_, count)| *count > 0);
+    (
+        text,
+        lost.map(|(what, count)| format!("{count} {what} have no colour in a diagram and are left out"))
+            .collect(),
+    )
 }
 
 /// A drawing while it is written.
 #[derive(Default)]
 struct Drawing {
     text: String,
+    /// False for a diagram.
+    is_marked: bool,
     /// Ids that are written.
     ids: HashSet<String>,
     /// Ids of the scene's objects, where others are made up.
@@ -48,11 +57,30 @@ struct Drawing {
 }
 
 impl Drawing {
-    fn all(&mut self, scene: &Scene) {
+    fn page(mut self, scene: &Scene, content: impl FnOnce(&mut Self, &Scene)) -> String {
+        let out = &mut self;
+        let view = scene.view;
+        let (wide, tall) = (view.width() * scene.px_per_unit, view.height() * scene.px_per_unit);
+        let _ = writeln!(
+            out.text,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
+         xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" xmlns:rinceau=\"{NAMESPACE}\" \
+         width=\"{wide}\" height=\"{tall}\" viewBox=\"{} {} {} {}\">",
+            view.x0,
+            view.y0,
+            view.width(),
+            view.height()
+        );
         if !scene.guides.is_empty() {
-            self.text.push_str(&look::arrow(""));
-            self.text.push('\n');
+            out.text.push_str(&look::arrow(""));
+            out.text.push('\n');
         }
+        content(out, scene);
+        out.text.push_str("</svg>\n");
+        self.text
+    }
+
+    fn all(&mut self, scene: &Scene) {
         if !scene.rules.is_empty() {
             self.text.push_str("<metadata>\n");
             for rules in &scene.rules {
@@ -62,27 +90,7 @@ impl Drawing {
             }
             self.text.push_str("</metadata>\n");
         }
-        for container in &scene.containers {
-            let paint = container.fill.as_deref().unwrap_or("none");
-            let style = |rule: FillRule| match rule {
-                FillRule::EvenOdd => format!("fill:{paint};stroke:#000000;fill-rule:evenodd"),
-                FillRule::NonZero => format!("fill:{paint};stroke:#000000"),
-            };
-            if let [outline] = &container.outlines[..] {
-                self.open("path", &container.source, Some(Role::Container), &container.overrides);
-                attribute(&mut self.text, "style", &style(outline.rule));
-                self.path(&outline.path);
-                continue;
-            }
-            self.open("g", &container.source, Some(Role::Container), &container.overrides);
-            self.text.push_str(">\n");
-            for outline in &container.outlines {
-                self.text.push_str("<path");
-                attribute(&mut self.text, "style", &style(outline.rule));
-                self.path(&outline.path);
-            }
-            self.text.push_str("</g>\n");
-        }
+        self.containers(scene);
         for fixed in &scene.fixed {
             self.group(&fixed.source, Role::Fixed, &fixed.parts);
         }
@@ -98,29 +106,7 @@ impl Drawing {
         }
         self.points(&scene.seeds, Role::Seed);
         self.points(&scene.tacks, Role::Tack);
-        for element in &scene.elements {
-            self.open("g", &element.source, Some(Role::Element), &BTreeMap::new());
-            if !element.kind.is_empty() {
-                attribute(&mut self.text, "rinceau:kind", &element.kind);
-            }
-            if element.symbol != element.source.id {
-                attribute(&mut self.text, "rinceau:symbol", &element.symbol);
-            }
-            if !element.sets.is_empty() {
-                attribute(&mut self.text, "rinceau:set", &element.sets.join(" "));
-            }
-            self.text.push_str(">\n");
-            element.template.parts.iter().for_each(|part| self.part(part));
-            if let Some((base, tip)) = element.template.spine {
-                let mut line = BezPath::new();
-                line.move_to(base);
-                line.line_to(tip);
-                let (class, style) = (Role::Spine.class(), look::style(Role::Spine));
-                let _ = write!(self.text, "<path class=\"{class}\" style=\"{style}\"");
-                self.path(&line);
-            }
-            self.text.push_str("</g>\n");
-        }
+        self.elements(scene);
         for reference in &scene.references {
             self.open("g", &reference.source, Some(Role::Reference), &BTreeMap::new());
             if !reference.flips.is_empty() {
@@ -140,6 +126,80 @@ impl Drawing {
         self.forms(&scene.forms);
     }
 
+    /// What a diagram has a colour for.
+    fn inks(&mut self, scene: &Scene) {
+        self.containers(scene);
+        for fixed in &scene.fixed {
+            let green = |part: &Part| {
+                let mut style = Style::filled("#00aa00");
+                for name in ["fill-rule", "stroke-width"] {
+                    part.style.get(name).into_iter().for_each(|value| style.set(name, value));
+                }
+                if part.style.stroke_width().is_some() {
+                    style.set("stroke", "#00aa00");
+                }
+                Part { style, ..part.clone() }
+            };
+            self.group(&fixed.source, Role::Fixed, &fixed.parts.iter().map(green).collect::<Vec<_>>());
+        }
+        self.lines(&scene.guides, Role::Guide);
+        self.lines(&scene.fixed_spines, Role::FixedSpine);
+        self.elements(scene);
+    }
+
+    fn containers(&mut self, scene: &Scene) {
+        for container in &scene.containers {
+            let paint = container.fill.as_deref().filter(|_| self.is_marked).unwrap_or("none");
+            let style = |rule: FillRule| match rule {
+                FillRule::EvenOdd => format!("fill:{paint};stroke:#000000;fill-rule:evenodd"),
+                FillRule::NonZero => format!("fill:{paint};stroke:#000000"),
+            };
+            if let [outline] = &container.outlines[..] {
+                self.open("path", &container.source, Some(Role::Container), &container.overrides);
+                attribute(&mut self.text, "style", &style(outline.rule));
+                self.path(&outline.path);
+                continue;
+            }
+            self.open("g", &container.source, Some(Role::Container), &container.overrides);
+            self.text.push_str(">\n");
+            for outline in &container.outlines {
+                self.text.push_str("<path");
+                attribute(&mut self.text, "style", &style(outline.rule));
+                self.path(&outline.path);
+            }
+            self.text.push_str("</g>\n");
+        }
+    }
+
+    fn elements(&mut self, scene: &Scene) {
+        for element in &scene.elements {
+            self.open("g", &element.source, Some(Role::Element), &BTreeMap::new());
+            if !element.kind.is_empty() && self.is_marked {
+                attribute(&mut self.text, "rinceau:kind", &element.kind);
+            }
+            if element.symbol != element.source.id && self.is_marked {
+                attribute(&mut self.text, "rinceau:symbol", &element.symbol);
+            }
+            if !element.sets.is_empty() && self.is_marked {
+                attribute(&mut self.text, "rinceau:set", &element.sets.join(" "));
+            }
+            self.text.push_str(">\n");
+            element.template.parts.iter().for_each(|part| self.part(part));
+            if let Some((base, tip)) = element.template.spine {
+                let mut line = BezPath::new();
+                line.move_to(base);
+                line.line_to(tip);
+                self.text.push_str("<path");
+                if self.is_marked {
+                    attribute(&mut self.text, "class", &Role::Spine.class());
+                }
+                attribute(&mut self.text, "style", &look::style(Role::Spine));
+                self.path(&line);
+            }
+            self.text.push_str("</g>\n");
+        }
+    }
+
     /// A tag up to its first own attribute.
     fn open(&mut self, tag: &str, source: &Source, role: Option<Role>, overrides: &BTreeMap<String, String>) {
         let _ = write!(self.text, "<{tag}");
@@ -149,11 +209,11 @@ impl Drawing {
         if source.label != source.id {
             attribute(&mut self.text, "inkscape:label", &source.label);
         }
-        if let Some(role) = role {
+        if let Some(role) = role.filter(|_| self.is_marked) {
             attribute(&mut self.text, "class", &role.class());
             attribute(&mut self.text, "rinceau:role", role.name());
         }
-        for (name, value) in overrides {
+        for (name, value) in overrides.iter().filter(|_| self.is_marked) {
             attribute(&mut self.text, &format!("rinceau:{name}"), value);
         }
     }

@@ -63,6 +63,13 @@ pub fn generate(
     design.draw(params, scene)
 }
 
+/// Reads growth rules without growing anything.
+///
+/// Errors: they cannot be read, with line and column of their text.
+pub fn check_rules(text: RuleText) -> Result<(), Error> {
+    rules::Rules::read(text).map(drop)
+}
+
 /// Finds a rule file: one that the scene carries, or one that is built in.
 ///
 /// Errors: there is none of this name.

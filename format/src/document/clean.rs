@@ -1,0 +1,260 @@
+//! Drawings to hand on: without marks and recipes, or as nothing but paths.
+
+use super::Document;
+use super::edit::{splice, start_tag_end};
+use crate::error::Error;
+use crate::look::ARROW;
+use crate::number::{decimals_for, path_data};
+use crate::read::has_mark;
+use crate::scene::Selection;
+use crate::units::mean_scale;
+use crate::vocabulary::{NAMESPACE, Role, XLINK};
+use crate::write::{attribute, escaped};
+use crate::xml::PlainAttribute;
+use roxmltree::Node;
+use std::collections::{BTreeMap, HashSet};
+use std::ops::Range;
+
+impl Document {
+    /// The artwork alone: without objects that carry a mark, hidden sublayers of results, explored forms,
+    /// recipes, and anything else of this format. Results stay, and what is not marked. A marked object that
+    /// a clone refers to stays where it is, but in `<defs>`.
+    ///
+    /// Errors: something of this format comes out of an entity.
+    pub fn artwork_only(&self) -> Result<Document, Error> {
+        let text = self.parse(|xml| {
+            let root = xml.root_element();
+            self.check_verbatim(root)?;
+            let removed = removed(root);
+            let kept = referred_to(root, &removed);
+            let mut edits: Vec<(Range<usize>, String)> = Vec::new();
+            let root_tag = &self.text[root.range()];
+            let name = root_tag[1..].split(|c: char| c.is_whitespace() || c == '>' || c == '/').next();
+            let p = name.and_then(|name| name.strip_suffix("svg")).unwrap_or("");
+            let mut gone: Range<usize> = 0..0;
+            for node in root.descendants().filter(Node::is_element) {
+                let range = node.range();
+                if gone.contains(&range.start) {
+                    continue;
+                }
+                if removed.contains(&range.start) {
+                    self.check_verbatim(node)?;
+                    if kept.contains(&range.start) {
+                        edits.push((range.start..range.start, format!("<{p}defs>")));
+                        edits.push((range.end..range.end, format!("</{p}defs>")));
+                    } else {
+                        let before = self.text[..range.start].trim_end_matches([' ', '\t']);
+                        let start = before
+                            .strip_suffix('\n')
+                            .map_or(range.start, |before| before.strip_suffix('\r').unwrap_or(before).len());
+                        edits.push((start..range.end, String::new()));
+                        gone = range;
+                        continue;
+                    }
+                }
+                self.plain_tag(node, &mut edits)?;
+            }
+            Ok(splice(&self.text, edits))
+        })?;
+        Document::with_limits(crate::encoding::encode(&text, self.encoding), self.limits.clone())
+    }
+
+    /// Takes attributes, classes and declarations of this format off a tag.
+    fn plain_tag(&self, node: Node, edits: &mut Vec<(Range<usize>, String)>) -> Result<(), Error> {
+        let range = node.range();
+        let ours = node.attributes().filter(|a| a.namespace() == Some(NAMESPACE)).map(|a| a.range());
+        let class = node.plain_node("class").filter(|class| class.value().contains("rinceau-"));
+        let tag = range.start..range.start + start_tag_end(&self.text[range.clone()]).0;
+        let declared = declaration(&self.text[tag.clone()]);
+        let own: Vec<Range<usize>> =
+            ours.chain(declared.map(|found| tag.start + found.start..tag.start + found.end)).collect();
+        if own.is_empty() && class.is_none() {
+            return Ok(());
+        }
+        self.check_verbatim(node)?;
+        let with_space = |range: Range<usize>| self.text[..range.start].trim_end().len()..range.end;
+        edits.extend(own.into_iter().map(|range| (with_space(range), String::new())));
+        if let Some(class) = class {
+            let tokens = class.value().split_whitespace().filter(|token| Role::from_class(token).is_none());
+            let rest = tokens.collect::<Vec<_>>().join(" ");
+            match rest.is_empty() {
+                true => edits.push((with_space(class.range()), String::new())),
+                false => edits.push((class.range_value(), escaped(&rest).replace('\'', "&#39;"))),
+            }
+        }
+        Ok(())
+    }
+
+    /// The artwork alone as nothing but paths in the units of the page, in drawing order: for cutters and
+    /// plotters. Text is outlines, clones are shapes. Also what paths cannot say, in words.
+    ///
+    /// Errors: as [`Document::artwork_only`]; an object that cannot be read.
+    pub fn flat(&self) -> Result<(Document, Vec<String>), Error> {
+        let clean = self.artwork_only()?;
+        // As if all of it were one fixed object: that is read shape by shape.
+        let (head, whole) = clean.parse(|xml| {
+            let range = xml.root_element().range();
+            let element = &clean.text[range.clone()];
+            let (tag_end, closes) = start_tag_end(element);
+            let head = clean.text[..range.start + tag_end].to_owned();
+            if closes {
+                return Ok((head, None));
+            }
+            let name = element[1..].split(|c: char| c.is_whitespace() || c == '>').next().unwrap_or("svg");
+            let p = name.strip_suffix("svg").unwrap_or("");
+            let (start, end) = (range.start + tag_end + 1, range.start + element.rfind("</").unwrap_or(0));
+            let group = format!("<{p}g class=\"{}\">", Role::Fixed.class());
+            let edits = vec![(start..start, group), (end..end, format!("</{p}g>"))];
+            Ok((head, Some((p.to_owned(), splice(&clean.text, edits)))))
+        })?;
+        let Some((p, whole)) = whole else { return Ok((clean, Vec::new())) };
+        let whole = Document { text: whole, ..self.clone() };
+        let scene = whole.scene(&Selection::default())?;
+        let mut lost: BTreeMap<&str, usize> = BTreeMap::new();
+        let decimals = decimals_for(scene.view.size().max_side());
+        let mut text = head + ">" + self.newline();
+        for part in scene.fixed.iter().flat_map(|fixed| &fixed.parts) {
+            part.style.effects().iter().for_each(|effect| *lost.entry(effect).or_default() += 1);
+            if part.style.is_picture() || part.style.is_invisible() {
+                continue;
+            }
+            let mut path = part.path.clone();
+            path.apply_affine(part.transform);
+            let mut style = part.style.scaled(mean_scale(part.transform), decimals);
+            for name in ["fill", "stroke"] {
+                if style.get(name).is_some_and(|paint| paint.contains("url(")) {
+                    *lost.entry("gradient or pattern").or_default() += 1;
+                    style.set(name, "#808080");
+                }
+            }
+            for name in ["marker-start", "marker-mid", "marker-end"] {
+                if style.get(name).is_some_and(|marker| marker != "none") {
+                    *lost.entry("marker").or_default() += 1;
+                    style.set(name, "none");
+                }
+            }
+            text.push_str(&format!("<{p}path"));
+            attribute(&mut text, "style", &style.css());
+            attribute(&mut text, "d", &path_data(&path, decimals));
+            text.push_str("/>");
+            text.push_str(self.newline());
+        }
+        text.push_str(&format!("</{p}svg>"));
+        text.push_str(self.newline());
+        let flat = Document::with_limits(crate::encoding::encode(&text, self.encoding), self.limits.clone())?;
+        let mut notes = scene.warnings;
+        notes.extend(
+            lost.into_iter()
+                .map(|(what, count)| format!("{count} shapes lose their {what}: paths have none")),
+        );
+        Ok((flat, notes))
+    }
+}
+
+/// Where nodes start that are no artwork, outermost first.
+fn removed(root: Node) -> HashSet<usize> {
+    let mut removed = HashSet::new();
+    let (mut gone, mut result): (Range<usize>, Range<usize>) = (0..0, 0..0);
+    for node in root.descendants().skip(1).filter(Node::is_element) {
+        let range = node.range();
+        if gone.contains(&range.start) {
+            continue;
+        }
+        if node.attribute((NAMESPACE, "result")).is_some() && !result.contains(&range.start) {
+            result = range.clone();
+        }
+        let is_hidden = || {
+            node.plain("style").is_some_and(|style| {
+                crate::css::declarations(style).any(|d| d.name == "display" && d.value.trim() == "none")
+            })
+        };
+        let is_mark = !result.contains(&range.start) && has_mark(node) && has_role(node);
+        let is_ours = node.tag_name().namespace() == Some(NAMESPACE)
+            || node.attribute((NAMESPACE, "history")).is_some()
+            || node.plain("id") == Some(ARROW)
+            || is_arrows(node);
+        if is_mark || is_ours || result.contains(&range.start) && is_hidden() {
+            removed.insert(range.start);
+            gone = range;
+        }
+    }
+    removed
+}
+
+fn has_role(node: Node) -> bool {
+    let class = node.plain("class").unwrap_or("");
+    node.attribute((NAMESPACE, "role")).is_some()
+        || class.split_whitespace().any(|token| Role::from_class(token).is_some())
+}
+
+/// True for definitions of the arrow head of guides and nothing else.
+fn is_arrows(node: Node) -> bool {
+    let mut children = node.children().filter(Node::is_element).peekable();
+    node.tag_name().name() == "defs"
+        && children.peek().is_some()
+        && children.all(|child| child.plain("id") == Some(ARROW))
+}
+
+/// Which of the removed nodes hold something that what stays refers to.
+fn referred_to(root: Node, removed: &HashSet<usize>) -> HashSet<usize> {
+    // Each removed node with the ids in it and the references out of it; what stays has number 0.
+    let mut owners: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut references: BTreeMap<usize, Vec<String>> = BTreeMap::new();
+    let (mut owner, mut inside): (usize, Range<usize>) = (0, 0..0);
+    for node in root.descendants() {
+        let start = node.range().start;
+        if !inside.contains(&start) {
+            owner = 0;
+            if removed.contains(&start) && node.is_element() {
+                (owner, inside) = (start, node.range());
+            }
+        }
+        if let Some(id) = node.plain("id") {
+            owners.entry(id).or_insert(owner);
+        }
+        let list = references.entry(owner).or_default();
+        if let Some(href) = node.plain("href").or_else(|| node.attribute((XLINK, "href"))) {
+            list.extend(href.trim().strip_prefix('#').map(str::to_owned));
+        }
+        let values =
+            node.attributes().map(|attribute| attribute.value()).filter(|value| value.contains("url("));
+        for value in values.chain(node.text().filter(|text| text.contains("url("))) {
+            for piece in value.split("url(").skip(1) {
+                let name = piece.trim_start_matches([' ', '"', '\'']).strip_prefix('#');
+                let end = |name: &str| name.find([')', '"', '\'', ' ']).unwrap_or(name.len());
+                list.extend(name.map(|name| name[..end(name)].to_owned()));
+            }
+        }
+    }
+    let mut kept = HashSet::new();
+    let mut fresh = vec![0];
+    while let Some(owner) = fresh.pop() {
+        for id in references.get(&owner).into_iter().flatten() {
+            if let Some(&target) = owners.get(id.as_str())
+                && target != 0
+                && kept.insert(target)
+            {
+                fresh.push(target);
+            }
+        }
+    }
+    kept
+}
+
+/// Where a tag declares our namespace.
+fn declaration(tag: &str) -> Option<Range<usize>> {
+    let mut from = 0;
+    while let Some(found) = tag[from..].find("xmlns:") {
+        let start = from + found;
+        from = start + 6;
+        let Some(equals) = tag[from..].find('=') else { break };
+        let value = tag[from + equals + 1..].trim_start();
+        let Some(quote) = value.chars().next().filter(|quote| matches!(quote, '"' | '\'')) else { continue };
+        let Some(end) = value[1..].find(quote) else { break };
+        if &value[1..=end] == NAMESPACE {
+            let open = tag.len() - value.len();
+            return Some(start..open + end + 2);
+        }
+    }
+    None
+}
