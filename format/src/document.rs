@@ -17,6 +17,7 @@ use crate::prescan::prescan;
 use crate::read;
 use crate::scene::{Scene, Selection};
 use roxmltree::ParsingOptions;
+use std::sync::{Arc, OnceLock};
 
 pub(crate) use history::forms_of_step;
 pub use layers::Layer;
@@ -25,10 +26,24 @@ pub use problems::Problem;
 /// A drawing. Every edit returns a new one; bytes outside the edit are the source's own.
 #[derive(Clone, Debug)]
 pub struct Document {
-    text: String,
+    text: Arc<String>,
     encoding: Encoding,
     limits: Limits,
+    /// The tree of the text, once it is asked for; copies share it.
+    tree: Arc<OnceLock<Tree>>,
 }
+
+self_cell::self_cell!(
+    /// A tree and the text that it borrows.
+    struct Tree {
+        owner: Arc<String>,
+        #[covariant]
+        dependent: Xml,
+    }
+    impl {Debug}
+);
+
+type Xml<'t> = roxmltree::Document<'t>;
 
 impl Document {
     /// Reads a drawing: SVG or svgz, with or without byte-order mark, in UTF-8, UTF-16 or
@@ -42,10 +57,19 @@ impl Document {
     /// The same with other limits.
     pub fn with_limits(bytes: Vec<u8>, limits: Limits) -> Result<Self, Error> {
         let (text, encoding) = encoding::decode(bytes, &limits)?;
-        let document = Document { text, encoding, limits };
+        let document = Document::new(text, encoding, limits);
         prescan(&document.text, &document.limits)?;
         document.parse(|_| Ok(()))?;
         Ok(document)
+    }
+
+    fn new(text: String, encoding: Encoding, limits: Limits) -> Self {
+        Document { text: Arc::new(text), encoding, limits, tree: Arc::default() }
+    }
+
+    /// The drawing with another text.
+    fn with_text(&self, text: String) -> Self {
+        Document::new(text, self.encoding, self.limits.clone())
     }
 
     /// A drawing of nothing but what a scene knows; it reads as that scene.
@@ -87,14 +111,22 @@ impl Document {
         self.parse(|xml| read::scene(xml, selection, &self.limits))
     }
 
-    /// Parses the text for one use. The tree borrows the text, so it does not outlive it.
+    /// Uses the tree of the text. It is parsed once, however often it is used.
     fn parse<T>(&self, f: impl FnOnce(&roxmltree::Document) -> Result<T, Error>) -> Result<T, Error> {
+        if let Some(tree) = self.tree.get() {
+            return f(tree.borrow_dependent());
+        }
+        let tree = Tree::try_new(Arc::clone(&self.text), |text| self.parsed(text))?;
+        f(self.tree.get_or_init(|| tree).borrow_dependent())
+    }
+
+    fn parsed<'t>(&self, text: &'t str) -> Result<roxmltree::Document<'t>, Error> {
         if self.text.trim().is_empty() {
             return Err(Error::new("empty-file", "The file is empty", "Save the drawing again as SVG"));
         }
         let options = ParsingOptions { allow_dtd: true, nodes_limit: u32::MAX, ..ParsingOptions::default() };
-        let xml = roxmltree::Document::parse_with_options(&self.text, options)
-            .map_err(|error| self.xml_error(&error))?;
+        let xml =
+            roxmltree::Document::parse_with_options(text, options).map_err(|error| self.xml_error(&error))?;
         let root = xml.root_element();
         if !read::is_svg_root(root) {
             let at = Position::of(&self.text, root.range().start);
@@ -105,7 +137,7 @@ impl Document {
             )
             .at(at));
         }
-        f(&xml)
+        Ok(xml)
     }
 
     fn xml_error(&self, error: &roxmltree::Error) -> Error {

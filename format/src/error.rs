@@ -50,10 +50,10 @@ impl<'t> Positions<'t> {
 fn advance(from: Position, bytes: &[u8]) -> Position {
     // A continuation byte (0b10xxxxxx) does not start a character.
     let characters = |bytes: &[u8]| bytes.iter().filter(|&&b| b & 0xC0 != 0x80).count();
-    match bytes.iter().rposition(|&b| b == b'\n') {
+    match memchr::memrchr(b'\n', bytes) {
         None => Position { line: from.line, column: from.column + characters(bytes) },
         Some(last) => {
-            let lines = bytes.iter().filter(|&&b| b == b'\n').count();
+            let lines = memchr::memchr_iter(b'\n', bytes).count();
             Position { line: from.line + lines, column: 1 + characters(&bytes[last + 1..]) }
         }
     }

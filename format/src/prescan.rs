@@ -10,6 +10,7 @@ mod doctype;
 use crate::error::{Error, Position};
 use crate::limits::Limits;
 use doctype::Entities;
+use memchr::{memchr_iter, memchr2};
 
 /// Comparisons of names that the parser may make because of long lists of attributes or
 /// namespaces (about half a second). It compares each with each.
@@ -25,7 +26,9 @@ const LEAST_COST: usize = 16;
 /// Refuses text that exceeds the limits.
 pub(crate) fn prescan(text: &str, limits: &Limits) -> Result<(), Error> {
     for (sign, most) in SIGNS_PER_NODE {
-        if text.bytes().filter(|&b| b == sign).count() > limits.nodes.saturating_mul(most) {
+        let most = limits.nodes.saturating_mul(most);
+        // Most texts are shorter than that.
+        if text.len() > most && memchr_iter(sign, text.as_bytes()).count() > most {
             return Err(over(text, "too-many-nodes", 0, too_many_nodes(limits)));
         }
     }
@@ -67,7 +70,7 @@ struct Scan<'a> {
 impl Scan<'_> {
     fn run(&mut self) -> Result<(), Error> {
         let mut at = 0;
-        while let Some(skipped) = self.bytes[at..].iter().position(|&b| b == b'<' || b == b'&') {
+        while let Some(skipped) = memchr2(b'<', b'&', &self.bytes[at..]) {
             at += skipped;
             if self.bytes[at] == b'&' {
                 at = self.reference(at)?;
@@ -148,7 +151,7 @@ impl Scan<'_> {
     /// The closing quote of an attribute value.
     fn value_end(&mut self, from: usize, quote: u8) -> Result<usize, Error> {
         let mut at = from;
-        while let Some(skipped) = self.bytes[at..].iter().position(|&b| b == quote || b == b'&') {
+        while let Some(skipped) = memchr2(quote, b'&', &self.bytes[at..]) {
             at += skipped;
             if self.bytes[at] == quote {
                 return Ok(at);

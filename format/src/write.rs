@@ -79,6 +79,16 @@ impl<'a> Sink<'a> {
         }
     }
 
+    /// Adds text, behind what there is; much of it goes out without a copy.
+    pub fn put_text(&mut self, text: &str) {
+        const MUCH: usize = 1 << 16;
+        if text.len() < MUCH || self.out.is_none() {
+            self.text.push_str(text);
+        } else {
+            self.put(text.as_bytes());
+        }
+    }
+
     fn flush(&mut self) {
         let Some(out) = self.out.as_mut() else { return };
         if self.failed.is_none() {

@@ -1,7 +1,10 @@
 //! Thousands of real drawings are read: no panic, at most a second each, hardly one refused.
 //! Runs where `RINCEAU_CORPORA` is set, which `tests/run --corpora` does.
 
-use rinceau_format::{Document, Selection};
+use kurbo::{Rect, Shape};
+use resvg::{tiny_skia, usvg};
+use rinceau::{Deadline, GENERATORS, Values};
+use rinceau_format::{Document, Recipe, Selection};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -33,11 +36,11 @@ struct Outcome {
     refusal: Option<(String, String)>,
 }
 
-#[test]
-fn real_drawings_are_read() {
+/// Every drawing of the corpora, if they are asked for.
+fn corpora() -> Option<Vec<PathBuf>> {
     if std::env::var_os("RINCEAU_CORPORA").is_none() {
         println!("skipped: set RINCEAU_CORPORA to read the corpora (tests/run --corpora)");
-        return;
+        return None;
     }
     let mut files = Vec::new();
     for corpus in CORPORA {
@@ -46,7 +49,12 @@ fn real_drawings_are_read() {
     files.sort();
     files.dedup();
     assert!(files.len() > 5_000, "only {} drawings: are the packages installed?", files.len());
+    Some(files)
+}
 
+#[test]
+fn real_drawings_are_read() {
+    let Some(files) = corpora() else { return };
     let outcomes = read_all(&files);
     let (mut real, mut refused) = (0u32, 0u32);
     let mut codes: BTreeMap<&str, usize> = BTreeMap::new();
@@ -131,4 +139,127 @@ fn read(path: &Path) -> Outcome {
     let result = result.unwrap_or_else(|_| panic!("{} panics", path.display()));
     let refusal = result.err().map(|error| (error.code().to_owned(), error.to_string()));
     Outcome { path: path.to_owned(), bytes: size, time, refusal }
+}
+
+/// A shape of a real drawing is packed: every byte outside the layer is what it was, the picture outside the
+/// shape too, and without the layer the file is back.
+#[test]
+fn real_drawings_lose_nothing() {
+    /// One of so many files: each is rendered twice.
+    const EVERY: usize = 12;
+    /// Larger ones take long to render.
+    const LARGEST: u64 = 300_000;
+    let Some(files) = corpora() else { return };
+    let is_tried = |path: &&PathBuf| {
+        !HOSTILE.iter().any(|folder| path.to_string_lossy().contains(folder))
+            && path.metadata().is_ok_and(|metadata| metadata.len() < LARGEST)
+    };
+    let files: Vec<&PathBuf> = files.iter().filter(is_tried).step_by(EVERY).collect();
+    let next = AtomicUsize::new(0);
+    let filled = AtomicUsize::new(0);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                while let Some(path) = files.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    filled.fetch_add(usize::from(loses_nothing(path)), Ordering::Relaxed);
+                }
+            });
+        }
+    });
+    let filled = filled.into_inner();
+    println!("{} drawings, of which {filled} have a shape that was packed", files.len());
+    assert!(filled * 3 > files.len(), "only {filled} of {}", files.len());
+}
+
+/// False if the drawing has no shape that can be filled.
+fn loses_nothing(path: &Path) -> bool {
+    let name = path.display();
+    let bytes = std::fs::read(path).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let Ok(document) = Document::from_bytes(bytes.clone()) else { return false };
+    let Some((filled, area)) = packed(&document) else { return false };
+    let unzipped = document.to_bytes();
+    let after = filled.to_bytes();
+    let same = |pair: &(&u8, &u8)| pair.0 == pair.1;
+    let before = unzipped.iter().zip(&after).take_while(same).count();
+    let behind = unzipped.iter().rev().zip(after.iter().rev()).take_while(same).count();
+    assert!(before + behind >= unzipped.len(), "{name}: a byte outside the layer changed");
+    let without = filled.without_layers().unwrap_or_else(|error| panic!("{name}: {error}"));
+    assert_eq!(without.to_bytes(), unzipped, "{name}: the file does not come back");
+    let (Some(first), Some(second)) = (picture(&document.to_utf8()), picture(&filled.to_utf8())) else {
+        return true;
+    };
+    assert_eq!((first.width(), first.height()), (second.width(), second.height()), "{name}");
+    // From units of the page to pixels, about; a ragged edge of a pixel more may be drawn.
+    let view = document.scene(&Selection::default()).expect("read before").view;
+    let scale = f64::from(first.width()).min(f64::from(first.height())) / view.size().min_side();
+    let aspect = view.width() / view.height() - f64::from(first.width()) / f64::from(first.height());
+    if aspect.abs() > 0.02 * view.width() / view.height() {
+        return true;
+    }
+    let area = Rect::new(area.x0 - view.x0, area.y0 - view.y0, area.x1 - view.x0, area.y1 - view.y0);
+    let area = area.scale_from_origin(scale).inflate(3.0, 3.0);
+    let width = first.width() as usize;
+    for (i, (a, b)) in first.pixels().iter().zip(second.pixels()).enumerate() {
+        let at = kurbo::Point::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
+        assert!(a == b || area.contains(at), "{name}: the picture changed at {at:?}, outside {area:?}");
+    }
+    true
+}
+
+/// The drawing with a few elements packed into one of its shapes, and the box around that.
+fn packed(document: &Document) -> Option<(Document, Rect)> {
+    const MOST_TRIED: usize = 12;
+    let generator = GENERATORS.iter().find(|generator| generator.name == "pack")?;
+    let xml = roxmltree::Document::parse_with_options(
+        document.text(),
+        roxmltree::ParsingOptions { allow_dtd: true, ..roxmltree::ParsingOptions::default() },
+    )
+    .ok()?;
+    let is_shape = |node: &roxmltree::Node| {
+        matches!(node.tag_name().name(), "path" | "rect" | "circle" | "ellipse" | "polygon")
+    };
+    let ids = xml.descendants().filter(is_shape).filter_map(|node| node.attribute("id")).take(MOST_TRIED);
+    for id in ids {
+        let selection = Selection { ids: vec![id.to_owned()] };
+        let Ok(scene) = document.scene(&selection) else { continue };
+        let [container] = &scene.containers[..] else { continue };
+        let bounds = container.outlines.iter().map(|outline| outline.path.bounding_box());
+        let area = bounds.reduce(|a, b| a.union(b))?;
+        let spacing = 0.3 * area.size().min_side();
+        if spacing.is_nan() || spacing <= 1e-3 * scene.view.size().max_side() {
+            continue;
+        }
+        let mut values = Values::default();
+        values.set(generator.table, "spacing", &format!("{spacing:.6}")).ok()?;
+        values.set(generator.table, "iterations", "1").ok()?;
+        let mut limit = Deadline::new(Some(Duration::from_secs(2)));
+        let Ok(artwork) = rinceau::generate(generator, &values, &scene, 1, &mut limit) else { continue };
+        let recipe = Recipe {
+            generator: "pack".into(),
+            params: values.recipe(generator.table),
+            seed: 1,
+            sources: vec![container.source.id.clone()],
+            with: Vec::new(),
+            label: "Ornament".into(),
+        };
+        // A shape in an entity, or a prefix that is taken, is refused with a sentence.
+        if let Ok(filled) = document.with_layer(&artwork, &recipe) {
+            return Some((filled, area));
+        }
+    }
+    None
+}
+
+/// A small picture of a drawing.
+fn picture(svg: &[u8]) -> Option<tiny_skia::Pixmap> {
+    const SIDE: f32 = 240.0;
+    let mut options = usvg::Options::default();
+    options.image_href_resolver.resolve_string = Box::new(|_, _| None);
+    let tree = usvg::Tree::from_data(svg, &options).ok()?;
+    let scale = SIDE / tree.size().width().max(tree.size().height());
+    let side = |length: f32| ((length * scale).round() as u32).max(1);
+    let mut pixmap = tiny_skia::Pixmap::new(side(tree.size().width()), side(tree.size().height()))?;
+    resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixmap.as_mut());
+    Some(pixmap)
 }

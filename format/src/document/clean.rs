@@ -108,7 +108,7 @@ impl Document {
             Ok((head, Some((p.to_owned(), splice(&clean.text, edits)))))
         })?;
         let Some((p, whole)) = whole else { return Ok((clean, Vec::new())) };
-        let whole = Document { text: whole, ..self.clone() };
+        let whole = self.with_text(whole);
         let scene = whole.scene(&Selection::default())?;
         let mut lost: BTreeMap<&str, usize> = BTreeMap::new();
         let decimals = decimals_for(scene.view.size().max_side());

@@ -21,7 +21,7 @@ pub(super) fn splice_to(
     let mut at = 0;
     for (range, new) in edits {
         debug_assert!(range.start >= at, "edits overlap");
-        sink.text.push_str(&text[at..range.start]);
+        sink.put_text(&text[at..range.start]);
         match new {
             New::Text(new) => sink.text.push_str(&new),
             New::Layer(before, after) => {
@@ -32,7 +32,7 @@ pub(super) fn splice_to(
         }
         at = range.end;
     }
-    sink.text.push_str(&text[at..]);
+    sink.put_text(&text[at..]);
 }
 
 /// Replaces ranges of `text`. Ranges must not overlap; they may touch, and are applied in

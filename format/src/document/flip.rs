@@ -39,7 +39,7 @@ impl Document {
                 }
             }
             if flips.is_empty() {
-                return Ok(self.text.clone());
+                return Ok(self.text.to_string());
             }
             let mut edits = Vec::new();
             self.check_verbatim(xml.root_element())?;

@@ -72,18 +72,18 @@ impl Document {
                 steps.push(known);
             }
             if out.is_empty() {
-                return Ok(self.text.clone());
+                return Ok(self.text.to_string());
             }
             Ok(splice(&self.text, vec![self.onto_map(xml, out)]))
         })?;
         Document::with_limits(crate::encoding::encode(&text, self.encoding), self.limits.clone())
     }
 
-    fn write_step(
+    fn write_step<'a, 'i>(
         &self,
-        resolver: &Resolver,
+        resolver: &Resolver<'a, 'i>,
         step: &Step,
-        forms: &[Node],
+        forms: &[Node<'a, 'i>],
         (known, parent): (&Known, Option<&Known>),
         out: &mut String,
     ) -> Result<(), Error> {
@@ -154,10 +154,10 @@ impl Document {
 
     /// Copies of forms where they stand, with other ids; the root among them may be told which
     /// step it comes from.
-    fn copies(
+    fn copies<'a, 'i>(
         &self,
-        resolver: &Resolver,
-        forms: &[Node],
+        resolver: &Resolver<'a, 'i>,
+        forms: &[Node<'a, 'i>],
         rename: &dyn Fn(&str) -> String,
         root: Option<(Node, &str)>,
         out: &mut String,

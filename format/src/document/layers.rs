@@ -55,7 +55,7 @@ impl Document {
             let whole = self.emptied_root(xml, &edits).map(|edit| vec![edit]);
             Ok(splice(&self.text, whole.unwrap_or(edits)))
         })?;
-        Ok(Document { text, ..self.clone() })
+        Ok(self.with_text(text))
     }
 
     /// What makes the root `<svg/>` again, if it was before the layers.
@@ -84,7 +84,7 @@ impl Document {
     pub fn with_layer(&self, artwork: &Artwork, recipe: &Recipe) -> Result<Document, Error> {
         let mut sink = Sink::default();
         self.put_layer(artwork, recipe, &mut sink)?;
-        Ok(Document { text: sink.text, ..self.clone() })
+        Ok(self.with_text(sink.text))
     }
 
     /// Writes the drawing with an artwork in it, as [`Document::with_layer`], without holding all

@@ -91,7 +91,7 @@ impl Document {
     }
 
     /// Errors if an object has no transform that could be written.
-    fn check_movable(&self, resolver: &Resolver, node: Node) -> Result<(), Error> {
+    fn check_movable<'a, 'i>(&self, resolver: &Resolver<'a, 'i>, node: Node<'a, 'i>) -> Result<(), Error> {
         self.check_verbatim(node)?;
         let refused = |code, sentence: &str, remedy| {
             Err(Error::new(code, format!("'{}' {sentence}", resolver.reference(node)), remedy)

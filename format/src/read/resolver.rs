@@ -10,7 +10,31 @@ use kurbo::{Affine, Point, Rect, Size};
 use roxmltree::{Document, Node, NodeId};
 use std::cell::OnceCell;
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::str::FromStr;
+
+/// Nodes by id.
+#[derive(Default)]
+struct Ids<'a> {
+    first: HashMap<&'a str, NodeId, foldhash::fast::RandomState>,
+    /// Second place of every id that stands more than once.
+    twice: HashMap<&'a str, NodeId, foldhash::fast::RandomState>,
+}
+
+impl<'a> Ids<'a> {
+    fn new(xml: &'a Document) -> Self {
+        let mut ids = Ids::default();
+        for node in xml.descendants() {
+            if let Some(id) = node.plain("id") {
+                match ids.first.entry(id) {
+                    Entry::Vacant(place) => drop(place.insert(node.id())),
+                    Entry::Occupied(_) => drop(ids.twice.entry(id).or_insert(node.id())),
+                }
+            }
+        }
+        ids
+    }
+}
 
 /// The looked-up side of one drawing.
 pub(crate) struct Resolver<'a, 'i> {
@@ -19,9 +43,7 @@ pub(crate) struct Resolver<'a, 'i> {
     pub cascade: Cascade<'a>,
     pub view: Rect,
     pub px_per_unit: f64,
-    ids: HashMap<&'a str, NodeId>,
-    /// Second place of every id that stands more than once.
-    twice: HashMap<&'a str, NodeId>,
+    ids: OnceCell<Ids<'a>>,
     /// Whether a node or one below it has a role, by node number.
     marked: Vec<bool>,
     positions: OnceCell<Positions<'i>>,
@@ -35,18 +57,10 @@ const MOST_SHEETS: usize = 1_000;
 impl<'a, 'i> Resolver<'a, 'i> {
     pub fn new(xml: &'a Document<'i>, limits: &'a Limits) -> Result<Self, Error> {
         let mut sheets: Vec<&'a str> = Vec::new();
-        let (mut ids, mut twice) = (HashMap::new(), HashMap::new());
         let mut marked = Vec::new();
         for node in xml.descendants() {
             let number = node.id().get() as usize;
             marked.resize(number + 1, false);
-            if let Some(id) = node.plain("id") {
-                if ids.contains_key(id) {
-                    twice.entry(id).or_insert(node.id());
-                } else {
-                    ids.insert(id, node.id());
-                }
-            }
             if is_svg(&node, "style") {
                 sheets.extend(node.children().filter_map(|child| child.text()));
             }
@@ -64,8 +78,8 @@ impl<'a, 'i> Resolver<'a, 'i> {
         }
         let (view, px_per_unit) = root_view(xml.root_element(), limits.coordinate);
         let cascade = Cascade::new(&sheets);
-        let (positions, places) = (OnceCell::new(), OnceCell::new());
-        Ok(Resolver { xml, limits, cascade, view, px_per_unit, ids, twice, marked, positions, places })
+        let (ids, positions, places) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
+        Ok(Resolver { xml, limits, cascade, view, px_per_unit, ids, marked, positions, places })
     }
 
     /// Notes that these nodes are of interest although they have no role.
@@ -121,8 +135,11 @@ impl<'a, 'i> Resolver<'a, 'i> {
 
     /// The node with this id. An id that stands twice is an error where it is asked for.
     pub fn by_id(&self, id: &str, asked_by: Option<Node>) -> Result<Option<Node<'a, 'i>>, Error> {
-        let Some(first) = self.ids.get(id).and_then(|&node| self.xml.get_node(node)) else { return Ok(None) };
-        if let Some(second) = self.twice.get(id).and_then(|&node| self.xml.get_node(node)) {
+        let ids = self.ids.get_or_init(|| Ids::new(self.xml));
+        let Some(first) = ids.first.get(id).and_then(|&node| self.xml.get_node(node)) else {
+            return Ok(None);
+        };
+        if let Some(second) = ids.twice.get(id).and_then(|&node| self.xml.get_node(node)) {
             let error = Error::new(
                 "duplicate-id",
                 format!(

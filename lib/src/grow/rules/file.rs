@@ -100,6 +100,12 @@ impl<'t> Reader<'_, 't> {
         self.peek().map_or(self.source.text.len(), |token| token.at)
     }
 
+    /// Where a type seems to be declared first.
+    fn at_of(&self, name: &str) -> usize {
+        let pair = self.tokens.windows(2).find(|pair| pair[0].text.ends_with("element") && pair[1].is(name));
+        pair.map_or(0, |pair| pair[1].at)
+    }
+
     fn is(&self, text: &str) -> bool {
         self.peek().is_some_and(|token| token.is(text))
     }
@@ -412,6 +418,18 @@ impl<'t> Reader<'_, 't> {
     }
 
     fn check(&self) -> Result<(), Error> {
+        // What goes before a declaration may have taken it in, as a statement without its end does.
+        let declared =
+            self.file.kinds.iter().map(|kind| Some(kind.name.as_str())).chain(std::iter::repeat(None));
+        if let Some((name, _)) =
+            self.names.iter().zip(declared).find(|(name, kind)| Some(name.as_str()) != *kind)
+        {
+            return Err(self.source.error(
+                self.at_of(name),
+                format!("the element type '{name}' is not declared where it seems to be"),
+                "End what goes before it, with ; or }",
+            ));
+        }
         for (at, kind, fields) in &self.look_fields {
             let kind = &self.file.kinds[*kind];
             let is_missing =
