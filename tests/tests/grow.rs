@@ -333,7 +333,7 @@ mod symmetry {
     /// Found by fuzzing.
     #[test]
     fn a_type_that_a_statement_took_in_is_missed() {
-        let rules = "let llest 1.0\nelement seed: point\nelement tip: point\nrule seed -> tip t { t.set(parent); }\nlook tip: art dot";
+        let rules = "let llest 1.0\nelement seed: point\nlet a = 1;\nelement tip: point\nrule tip -> { true }\nlook tip: art dot";
         let error = grown(&scene_with(rules), &[], 1).unwrap_err().to_string();
         assert!(
             error.contains("2:9: the element type 'seed' is not declared where it seems to be"),
