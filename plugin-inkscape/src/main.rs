@@ -52,3 +52,16 @@ pub fn unbroken<T>(work: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> 
         Err(Error::new("internal", sentence, "Please report it, with the drawing if you can"))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_becomes_a_sentence() {
+        let error = unbroken(|| -> Result<(), Error> { panic!("a mistake") }).unwrap_err();
+        assert_eq!(error.code(), "internal");
+        assert!(error.sentence().contains("main.rs:"), "{error}");
+        assert_eq!(unbroken(|| Ok(7)).unwrap(), 7);
+    }
+}

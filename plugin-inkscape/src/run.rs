@@ -38,7 +38,7 @@ impl Done {
 
     /// How evenly the containers are filled, where that is what the generator does.
     fn quality(&self) -> Result<serde_json::Value, Error> {
-        let fills = self.artwork.groups.iter().all(|group| group.stream.is_none());
+        let fills = self.artwork.groups.iter().all(|group| group.hidden || group.stream.is_none());
         if !fills || self.scene.containers.is_empty() {
             return Ok(serde_json::Value::Null);
         }

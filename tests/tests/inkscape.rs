@@ -375,6 +375,31 @@ fn a_refusal_leaves_the_drawing_as_it_was() {
 }
 
 /// Both those committed and those written at installation.
+/// Scenes and grammars are file formats of Inkscape's own dialogs.
+#[test]
+fn scenes_are_opened_and_saved() {
+    let user = User::new();
+    let marked = svg("<path id='body' class='rinceau-container' d='M0,0H90V60H0Z'/>");
+    let drawing = file(&user.home, "in.svg", &marked);
+    let json = user.home.path().join("scene.json");
+    let export = |input: &Path, output: &Path, extension: Option<&str>| {
+        let mut inkscape = Command::new("xvfb-run");
+        inkscape.args(["-a", "inkscape"]).arg(input);
+        inkscape.arg(format!("--export-filename={}", output.display()));
+        inkscape.args(extension.map(|id| format!("--export-extension={id}")));
+        user.at_home(&mut inkscape);
+        let done = Run::of(inkscape).limit(Duration::from_secs(90)).done();
+        std::fs::read_to_string(output).unwrap_or_else(|error| panic!("{error}: {}", done.stderr))
+    };
+    let saved = export(&drawing, &json, Some("org.rinceau.save-json"));
+    assert!(saved.starts_with("{\n  \"rinceau\": 1") && saved.contains("\"body\""), "{saved}");
+    let opened = export(&json, &user.home.path().join("opened.svg"), None);
+    assert!(opened.contains("id=\"body\"") && opened.contains("rinceau-container"), "{opened}");
+    let grammar = file(&user.home, "tree.cfdg", "startshape S\nshape S { SQUARE [] S [ y 1 s 0.7 r 20 ] }\n");
+    let opened = export(&grammar, &user.home.path().join("form.svg"), None);
+    assert!(opened.contains("rinceau-form"), "{opened}");
+}
+
 #[test]
 fn descriptions_follow_inkscape_s_schema() {
     let folder = folder();

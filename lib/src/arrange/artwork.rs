@@ -10,8 +10,11 @@ use crate::geom::region::Region;
 use crate::rng::Rng;
 use crate::shapes::Shapes;
 use kurbo::{Affine, BezPath, Point, Rect, Vec2};
-use rinceau_format::{Error, Example, Group, Item, Part, Reference, Scene, Style, Symbol, rgb};
+use rinceau_format::{
+    Error, Example, Group, Item, Part, Pieces, Reference, Scene, Stream, Style, Symbol, rgb,
+};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A container: all of it, and what of it is free.
 pub(super) struct Outline {
@@ -76,7 +79,7 @@ impl Outline {
 pub(super) struct Drawing {
     elements: Group,
     fixed: Group,
-    connectivity: Group,
+    connectivity: Edges,
     symbols: Vec<Symbol>,
 }
 
@@ -89,7 +92,7 @@ impl Drawing {
         Drawing {
             elements: named("elements", false),
             fixed,
-            connectivity: named("connectivity", true),
+            connectivity: Edges::default(),
             symbols: Vec::new(),
         }
     }
@@ -100,8 +103,13 @@ impl Drawing {
 
     /// The sublayers that hold something, and what their clones repeat.
     pub fn into_parts(self) -> (Vec<Group>, Vec<Symbol>) {
-        let mut groups = vec![self.elements, self.fixed, self.connectivity];
+        let mut groups = vec![self.elements, self.fixed];
         groups.retain(|group| !group.items.is_empty());
+        if !self.connectivity.pieces.is_empty() {
+            let stream: Arc<dyn Stream> = Arc::new(self.connectivity);
+            let name = "connectivity".to_owned();
+            groups.push(Group { name, hidden: true, stream: Some(stream), ..Group::default() });
+        }
         (groups, self.symbols)
     }
 
@@ -166,7 +174,7 @@ impl Drawing {
         }
         placed.sort_by(|a, b| a.0.total_cmp(&b.0));
         self.elements.items.extend(placed.into_iter().map(|(_, item)| item));
-        self.connectivity.items.extend(connectivity(arrangement, ground, example.mean));
+        self.connectivity.add(arrangement, ground, example.mean);
         Ok(())
     }
 }
@@ -243,26 +251,54 @@ fn toned(channel: u8, tone: f64) -> u8 {
     (channel + tone.abs() * (end - channel)).round() as u8
 }
 
-/// The edges between elements, as lines.
-fn connectivity(arrangement: &Arrangement, ground: &Ground, mean: f64) -> Vec<Item> {
-    let mut style = Style::filled("none");
-    style.set("stroke", "#ff0000");
-    style.set("stroke-width", &format!("{:.4}", 0.02 * mean));
-    let mut items = Vec::new();
-    for &index in &arrangement.grown {
-        let object = &arrangement.objects[index as usize];
-        let mut path = BezPath::new();
-        for &other in &object.edges {
-            let to = &arrangement.objects[other as usize];
-            if to.copy.is_some() && other > index {
-                path.move_to(object.at);
-                path.line_to(ground.near(to.at, object.at));
+/// The edges between elements, as lines: for each element those to younger ones. There may be several
+/// hundred thousand, so they are made as they are written.
+#[derive(Debug, Default)]
+struct Edges {
+    /// An element's place, then those of its neighbours.
+    points: Vec<Point>,
+    /// Where each element's points end, and its style.
+    pieces: Vec<(u32, u32)>,
+    styles: Vec<String>,
+}
+
+impl Edges {
+    fn add(&mut self, arrangement: &Arrangement, ground: &Ground, mean: f64) {
+        let mut style = Style::filled("none");
+        style.set("stroke", "#ff0000");
+        style.set("stroke-width", &format!("{:.4}", 0.02 * mean));
+        self.styles.push(style.css());
+        for &index in &arrangement.grown {
+            let object = &arrangement.objects[index as usize];
+            let first = self.points.len();
+            self.points.push(object.at);
+            for &other in &object.edges {
+                let to = &arrangement.objects[other as usize];
+                if to.copy.is_some() && other > index {
+                    self.points.push(ground.near(to.at, object.at));
+                }
+            }
+            match self.points.len() - first {
+                1 => self.points.truncate(first),
+                _ => self.pieces.push((self.points.len() as u32, self.styles.len() as u32 - 1)),
             }
         }
-        if !path.is_empty() {
-            let part = Part { path, transform: Affine::IDENTITY, style: style.clone() };
-            items.push(Item::new("edge", vec![part]));
+    }
+}
+
+impl Stream for Edges {
+    fn each(&self, pieces: &mut dyn Pieces) {
+        let mut start = 0;
+        for &(end, style) in &self.pieces {
+            let [from, others @ ..] = &self.points[start..end as usize] else { break };
+            let mut path = BezPath::new();
+            for &to in others {
+                path.move_to(*from);
+                path.line_to(to);
+            }
+            pieces.begin("edge", Affine::IDENTITY, &self.styles[style as usize]);
+            pieces.add(&path, Affine::IDENTITY);
+            start = end as usize;
         }
     }
-    items
 }
