@@ -123,7 +123,7 @@ impl std::error::Error for Error {}
 
 /// Escapes what a terminal or a dialog could be fooled by: C0 and C1 controls and the
 /// bidirectional overrides. Long text is cut, so that a message stays a sentence.
-pub(crate) fn printable(text: &str) -> String {
+pub fn printable(text: &str) -> String {
     const LONGEST: usize = 600;
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

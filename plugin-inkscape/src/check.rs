@@ -1,7 +1,7 @@
 //! `rinceau check`: what the marks in a drawing mean, and everything that is wrong with them.
 
 use crate::output;
-use rinceau_format::{Document, Error, Position, Problem, Scene, Source};
+use rinceau_format::{Document, Error, Position, Problem, Scene, Source, printable};
 use serde_json::json;
 use std::fmt::Write;
 use std::io::IsTerminal;
@@ -100,10 +100,11 @@ impl Check {
             self.scene.px_per_unit
         );
         for (role, source) in all(&self.scene) {
-            let _ = writeln!(out, "{}: {role} '{}'", source.at, Error::new("", &source.id, "").sentence());
+            let _ = writeln!(out, "{}: {role} '{}'", source.at, printable(&source.id));
         }
         for (generator, sources) in &self.results {
-            let _ = writeln!(out, "result of {generator} over {}", sources.join(", "));
+            let _ =
+                writeln!(out, "result of {} over {}", printable(generator), printable(&sources.join(", ")));
         }
         for problem in &self.problems {
             let kind = if problem.is_error { "error: " } else { "" };

@@ -31,7 +31,7 @@ pub fn run(matches: &ArgMatches, input: Option<&Path>, out: Option<&Path>) -> Re
     )?;
     let is_zipped = to == "svgz" && !out.is_some_and(output::is_zipped);
     output::write(out, &if is_zipped { output::zipped(&bytes) } else { bytes })?;
-    notes.iter().for_each(|note| eprintln!("rinceau: note: {note}"));
+    notes.iter().for_each(|note| output::note(note));
     Ok(())
 }
 

@@ -8,7 +8,7 @@ use crate::unbroken;
 use crate::{convert, output, progress, update};
 use rinceau::params::Kind;
 use rinceau::{Error, GENERATORS, Values};
-use rinceau_format::{Document, Role};
+use rinceau_format::{Document, Role, printable};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -108,7 +108,7 @@ impl Call {
             let document = Document::from_bytes(input)?;
             let updated = update::update(document, limit, &mut progress::Terminal::new())?;
             // What stays as it is has to be said, and the dialog is the place for it.
-            updated.notes.iter().for_each(|note| eprintln!("Note: {note}"));
+            updated.notes.iter().for_each(|note| eprintln!("Note: {}", printable(note)));
             return Ok(updated.document.to_bytes());
         }
         if self.tool == "resume" {

@@ -1,6 +1,6 @@
 //! Reading the input and writing the output, whole or not at all.
 
-use rinceau_format::{Error, Limits};
+use rinceau_format::{Error, Limits, printable};
 use std::fs::{self, File};
 use std::io::{self, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
@@ -75,6 +75,11 @@ pub fn write_by(
             "Check the folder, its permissions and the free space; nothing was changed",
         )
     })
+}
+
+/// Tells a person at the terminal something, whatever names are in it.
+pub fn note(text: &str) {
+    eprintln!("rinceau: note: {}", printable(text));
 }
 
 /// True for a name whose file is compressed.

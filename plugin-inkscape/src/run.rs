@@ -145,7 +145,7 @@ pub fn command(matches: &ArgMatches) -> Result<(), Error> {
             let limit = matches.get_one::<f64>("time-limit").map(|&s| Duration::from_secs_f64(s.min(1e9)));
             let updated = update::update(document, limit, &mut progress)?;
             output::write(path(matches, "out"), &updated.document.to_bytes())?;
-            updated.notes.iter().for_each(|note| eprintln!("rinceau: note: {note}"));
+            updated.notes.iter().for_each(|note| output::note(note));
             Ok(())
         }
         "resume" => {
@@ -198,7 +198,7 @@ fn generator_command(generator: &'static Generator, matches: &ArgMatches) -> Res
     progress.start("write");
     done.write(path(matches, "out"))?;
     for warning in &done.artwork.warnings {
-        eprintln!("rinceau: note: {warning}");
+        output::note(warning);
     }
     if let Some(report) = matches.get_one::<PathBuf>("report") {
         let stages: serde_json::Map<_, _> =

@@ -216,6 +216,15 @@ fn a_check_tells_scripts_everything() {
     let good = rinceau(["check", "-", "--json"]).input(drawing()).succeed();
     let check: Value = serde_json::from_slice(&good.stdout).unwrap();
     assert_eq!((&check["errors"], check["objects"].as_array().unwrap().len()), (&Value::from(0), 2));
+    // Names cannot fool a terminal.
+    let fooling = svg(
+        "<path id='a&#x9b;b' class='rinceau-guide rinceau-stem' rinceau:role='stem' d='M0,0H9'/><path class='rinceau-seed' id='c&#x202e;d'/>",
+    );
+    let check = rinceau(["check", "-"]).input(fooling.as_str()).succeed();
+    let converted = rinceau(["convert", "-", "-", "--to", "json"]).input(fooling.as_str()).succeed();
+    for text in [check.text(), converted.stderr.as_str()] {
+        assert!(text.contains("\\u{202e}") && !text.contains(['\u{9b}', '\u{202e}']), "{text:?}");
+    }
     // No drawing at all is a problem too.
     let done = rinceau(["check", "-", "--json"]).input("no drawing").done();
     let check: Value = serde_json::from_slice(&done.stdout).unwrap();
