@@ -50,10 +50,7 @@ impl Likeness {
         let edges = pairs.len().max(1) as f64;
         let grown = arrangement.grown.iter().filter_map(|&i| copies(i)).map(symbol);
         let at = |i: usize| -> Point { example.elements[i].at };
-        // As above: edges along the border are of no ring, and nothing is made from them.
-        let has_ring = |i: usize| !example.elements[i].ring.is_empty();
-        let of_rings = example.edges.iter().filter(|&&(a, b)| has_ring(a) || has_ring(b));
-        let drawn: Vec<f64> = of_rings.map(|&(a, b)| at(a).distance(at(b))).collect();
+        let drawn: Vec<f64> = example.edges.iter().map(|&(a, b)| at(a).distance(at(b))).collect();
         let drawn_pairs = example.edges.iter().map(|&(a, b)| sorted(symbol(a), symbol(b)));
         Likeness {
             residual: relax::residual(&arrangement.objects, ground) / example.mean,
