@@ -45,7 +45,7 @@ pub fn command() -> Command {
         }
         command = command.subcommand(sub);
     }
-    command
+    installing(command)
         .subcommand(
             Command::new("mark")
                 .about("Give objects a role (or clear it)")
@@ -95,15 +95,32 @@ pub fn command() -> Command {
                 .arg(Arg::new("picture").required(true))
                 .arg(Arg::new("width").required(true).value_parser(clap::value_parser!(u32))),
         )
+}
+
+/// What has to do with where the program is.
+fn installing(command: Command) -> Command {
+    let dir = || {
+        Arg::new("dir")
+            .long("dir")
+            .value_name("DIR")
+            .value_parser(clap::value_parser!(std::path::PathBuf))
+            .help("Inkscape's user extensions folder, if it is not the usual one")
+    };
+    command
+        .subcommand(Command::new("install").about("Install the Inkscape extension for this user").arg(dir()))
         .subcommand(
-            Command::new("install").about("Install the Inkscape extension for this user").arg(
-                Arg::new("dir")
-                    .long("dir")
-                    .value_name("DIR")
-                    .value_parser(clap::value_parser!(std::path::PathBuf))
-                    .help("Inkscape's user extensions folder, if it is not the usual one"),
+            Command::new("uninstall").about("Take the Inkscape extension of this user out again").arg(dir()),
+        )
+        .subcommand(
+            Command::new("completions").about("Print what a shell needs to complete this command line").arg(
+                Arg::new("shell")
+                    .value_name("SHELL")
+                    .required(true)
+                    .value_parser(clap::value_parser!(clap_complete::Shell))
+                    .help("The shell"),
             ),
         )
+        .subcommand(Command::new("manual").about("Print the manual page, for man"))
 }
 
 fn convert() -> Command {

@@ -1,4 +1,4 @@
-//! `rinceau install`: the binary and its descriptions into Inkscape's user folder.
+//! `rinceau install` and `uninstall`: the binary and its descriptions in Inkscape's user folder.
 
 use crate::{inx, output};
 use rinceau_format::Error;
@@ -9,17 +9,7 @@ use std::path::{Path, PathBuf};
 ///
 /// Errors: no folder is known for this system; it cannot be written.
 pub fn install(dir: Option<&Path>) -> Result<(), Error> {
-    let extensions = match dir {
-        Some(dir) => dir.to_owned(),
-        None => user_extensions().ok_or_else(|| {
-            Error::new(
-                "no-folder",
-                "Inkscape's user folder is not known here",
-                "Name it with --dir; Inkscape shows it under Edit > Preferences > System > User extensions",
-            )
-        })?,
-    };
-    let folder = extensions.join("rinceau");
+    let folder = folder(dir)?;
     let cannot = |what: &str, error: &std::io::Error| {
         Error::new(
             "cannot-install",
@@ -46,6 +36,55 @@ pub fn install(dir: Option<&Path>) -> Result<(), Error> {
     Ok(())
 }
 
+/// Takes out what [`install`] has put in, and the folder if nothing else is in it.
+///
+/// Errors: no folder is known for this system; it is not installed there; something cannot be removed.
+pub fn uninstall(dir: Option<&Path>) -> Result<(), Error> {
+    let folder = folder(dir)?;
+    if !folder.is_dir() {
+        return Err(Error::new(
+            "not-installed",
+            format!("There is no extension in '{}'", folder.display()),
+            "Name the folder of Inkscape's extensions with --dir",
+        ));
+    }
+    let cannot = |path: &Path, error: &std::io::Error| {
+        Error::new(
+            "cannot-install",
+            format!("'{}' cannot be removed: {error}", path.display()),
+            "Close Inkscape and check the folder's permissions",
+        )
+    };
+    let ours = ["bin/rinceau", "bin/rinceau.exe", inx::PATTERNS.0].map(|name| folder.join(name));
+    let entries = fs::read_dir(&folder).map_err(|error| cannot(&folder, &error))?;
+    let descriptions = entries.flatten().map(|entry| entry.path());
+    let descriptions =
+        descriptions.filter(|path| path.extension().is_some_and(|extension| extension == "inx"));
+    for path in descriptions.chain(ours).filter(|path| path.is_file()) {
+        fs::remove_file(&path).map_err(|error| cannot(&path, &error))?;
+    }
+    // Whatever else somebody has put there stays.
+    let _ = fs::remove_dir(folder.join("bin"));
+    let _ = fs::remove_dir(&folder);
+    println!("Removed from {}.", folder.display());
+    Ok(())
+}
+
+/// The folder of this extension.
+fn folder(dir: Option<&Path>) -> Result<PathBuf, Error> {
+    let extensions = match dir {
+        Some(dir) => dir.to_owned(),
+        None => user_extensions().ok_or_else(|| {
+            Error::new(
+                "no-folder",
+                "Inkscape's user folder is not known here",
+                "Name it with --dir; Inkscape shows it under Edit > Preferences > System > User extensions",
+            )
+        })?,
+    };
+    Ok(extensions.join("rinceau"))
+}
+
 /// Inkscape's folder for extensions of this user. `INKSCAPE_PROFILE_DIR` wins, as it does for
 /// Inkscape itself.
 fn user_extensions() -> Option<PathBuf> {
@@ -63,9 +102,11 @@ fn user_extensions() -> Option<PathBuf> {
         );
     }
     let flatpak = home("HOME")?.join(".var/app/org.inkscape.Inkscape/config/inkscape");
+    let snap = home("HOME")?.join("snap/inkscape/current/.config/inkscape");
     let native = home("XDG_CONFIG_HOME").unwrap_or(home("HOME")?.join(".config")).join("inkscape");
-    // A Flatpak's folder only where there is no native one: the native program cannot see it.
-    let base = if flatpak.is_dir() && !native.is_dir() { flatpak } else { native };
+    // That of a Flatpak or a Snap only where there is no native one: the native program cannot see it.
+    let boxed = [flatpak, snap].into_iter().find(|folder| folder.is_dir() && !native.is_dir());
+    let base = boxed.unwrap_or(native);
     Some(base.join("extensions"))
 }
 

@@ -1,6 +1,6 @@
 //! The whole flow on one screen: text, document, scene, generate, artwork, layer, text.
 
-use crate::{check, convert, install, output, progress, render, update};
+use crate::{args, check, convert, install, output, progress, render, update};
 use clap::ArgMatches;
 use rinceau::params::Kind;
 use rinceau::tack::Tacked;
@@ -162,6 +162,20 @@ pub fn command(matches: &ArgMatches) -> Result<(), Error> {
             let picture = matches.get_one::<String>("picture").map_or("png", String::as_str);
             render::work(picture, width)
                 .map_err(|what| Error::new("cannot-render", what, "Draw it otherwise"))
+        }
+        "uninstall" => install::uninstall(matches.get_one::<PathBuf>("dir").map(PathBuf::as_path)),
+        "completions" => {
+            let mut text = Vec::new();
+            if let Some(&shell) = matches.get_one::<clap_complete::Shell>("shell") {
+                clap_complete::generate(shell, &mut args::command(), "rinceau", &mut text);
+            }
+            output::write(None, &text)
+        }
+        "manual" => {
+            let mut text = Vec::new();
+            // Memory takes everything.
+            let _ = clap_mangen::Man::new(args::command()).render(&mut text);
+            output::write(None, &text)
         }
         "install" => install::install(matches.get_one::<PathBuf>("dir").map(PathBuf::as_path)),
         name => match GENERATORS.iter().find(|generator| generator.name == name) {

@@ -401,6 +401,36 @@ fn scenes_are_opened_and_saved() {
 }
 
 #[test]
+fn what_is_installed_is_taken_out_again() {
+    let folder = folder();
+    let at = |command: &str| rinceau([command, "--dir"]).arg(folder.path());
+    at("install").succeed();
+    let own = folder.path().join("rinceau");
+    file(&folder, "rinceau/notes.txt", "somebody's own");
+    at("uninstall").succeed();
+    let left: Vec<_> = own.read_dir().unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left, ["notes.txt"]);
+    std::fs::remove_file(own.join("notes.txt")).unwrap();
+    at("install").succeed();
+    at("uninstall").succeed();
+    assert!(!own.exists());
+    let again = at("uninstall").done();
+    assert!(again.code == Some(1) && again.stderr.contains("[not-installed]"), "{}", again.stderr);
+}
+
+#[test]
+fn shells_and_man_are_served() {
+    for (shell, mark) in
+        [("bash", "complete -F"), ("zsh", "#compdef rinceau"), ("fish", "complete -c rinceau")]
+    {
+        let text = rinceau(["completions", shell]).succeed().text().to_owned();
+        assert!(text.contains(mark) && text.contains("spacing"), "{shell}");
+    }
+    let page = rinceau(["manual"]).succeed().text().to_owned();
+    assert!(page.contains(".TH rinceau 1") && page.contains("convert"), "{page}");
+}
+
+#[test]
 fn descriptions_follow_inkscape_s_schema() {
     let folder = folder();
     rinceau(["install", "--dir"]).arg(folder.path()).succeed();
