@@ -52,5 +52,6 @@ pub use scene::{
 };
 pub use shape::arc_to_cubics;
 pub use style::{FillRule, Style, rgb};
+pub use text::generic_fonts;
 pub use units::Length;
 pub use vocabulary::{NAMESPACE, Role};

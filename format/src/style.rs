@@ -76,6 +76,9 @@ const EFFECTS: [(&str, &str); 4] =
 /// The effect of an image, whose outline is otherwise like a shape's.
 pub(crate) const PICTURE: &str = "picture";
 
+/// The colour of the object itself.
+const CURRENT_COLOR: &str = "currentColor";
+
 /// A longer value is left out: each object that inherits it writes it out again.
 const LONGEST_VALUE: usize = 4096;
 /// Widths beyond this many user units are left out, as the coordinates would be.
@@ -122,7 +125,12 @@ impl Style {
 
     /// A property's value, if it is not the default.
     pub fn get(&self, name: &str) -> Option<&str> {
-        self.properties.get(name).map(AsRef::as_ref)
+        let value = self.properties.get(name).map(AsRef::as_ref)?;
+        // It is inherited as the word, and means the colour of whoever inherits it.
+        match value == CURRENT_COLOR && name != "color" {
+            true => Some(self.get("color").unwrap_or("#000000")),
+            false => Some(value),
+        }
     }
 
     /// Sets a property that is carried along; others are ignored.
@@ -148,7 +156,8 @@ impl Style {
         let carried = |&(name, _): &(&'static str, String)| {
             name == "vector-effect" || INHERITED.contains(&name) && !matches!(name, "color" | "visibility")
         };
-        let properties = self.properties.iter().map(|(&name, value)| (name, value.to_string()));
+        let value = |name: &'static str| Some((name, self.get(name)?.to_owned()));
+        let properties = self.properties.keys().filter_map(move |&name| value(name));
         properties.filter(carried).chain(opacity)
     }
 
@@ -515,7 +524,7 @@ fn set_property(style: &mut Style, parent: &Style, name: &'static str, value: &s
         return;
     }
     if value == "inherit" {
-        match parent.get(name) {
+        match parent.properties.get(name) {
             Some(inherited) => style.put(name, inherited),
             None => style.remove(name),
         }
@@ -539,7 +548,8 @@ fn set_property(style: &mut Style, parent: &Style, name: &'static str, value: &s
                 None => return,
             }
         }
-        _ if value.eq_ignore_ascii_case("currentColor") => style.get("color").unwrap_or("#000000").to_owned(),
+        "color" if value.eq_ignore_ascii_case(CURRENT_COLOR) => return,
+        _ if value.eq_ignore_ascii_case(CURRENT_COLOR) => CURRENT_COLOR.to_owned(),
         _ => value.to_owned(),
     };
     style.put(name, &value);
@@ -583,6 +593,8 @@ mod tests {
             "path{stroke:blue !important}",
         );
         assert_eq!((style.get("fill"), style.get("stroke")), (Some("teal"), Some("blue")));
+        let style = computed("<g color='teal' fill='currentColor'><path color='gold'/></g>", "");
+        assert_eq!(style.css(), "fill:gold");
     }
 
     #[test]

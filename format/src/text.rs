@@ -7,6 +7,7 @@ use crate::write::{attribute, escaped};
 use crate::xml::PlainAttribute;
 use kurbo::{BezPath, Point};
 use roxmltree::Node;
+use std::collections::BTreeSet;
 use std::sync::{Arc, OnceLock};
 use usvg::tiny_skia_path::PathSegment;
 
@@ -82,19 +83,43 @@ fn write_text<'a>(
     Ok(())
 }
 
+/// Installed fonts for the generic families `serif`, `sans-serif` and `monospace`: the first of those that
+/// are usual, else any. Without this a drawing that names no font, or a generic one, has no text where the
+/// fonts of one large company are not installed.
+pub fn generic_fonts(installed: &BTreeSet<String>) -> [String; 3] {
+    const SERIF: [&str; 5] =
+        ["Times New Roman", "Liberation Serif", "DejaVu Serif", "Noto Serif", "FreeSerif"];
+    const SANS: [&str; 6] = ["Arial", "Liberation Sans", "DejaVu Sans", "Noto Sans", "Helvetica", "FreeSans"];
+    const MONO: [&str; 5] =
+        ["Courier New", "Liberation Mono", "DejaVu Sans Mono", "Noto Sans Mono", "FreeMono"];
+    let first =
+        |names: &[&str]| names.iter().find(|name| installed.contains(**name)).map(|name| (*name).to_owned());
+    let any =
+        first(&SANS).or_else(|| first(&SERIF)).or_else(|| installed.first().cloned()).unwrap_or_default();
+    [&SERIF[..], &SANS, &MONO].map(|names| first(names).unwrap_or_else(|| any.clone()))
+}
+
 /// The installed fonts. Finding them takes a tenth of a second, so it is done once.
 fn fonts() -> Arc<usvg::fontdb::Database> {
     static FONTS: OnceLock<Arc<usvg::fontdb::Database>> = OnceLock::new();
     let find = || {
         let mut fonts = usvg::fontdb::Database::new();
         fonts.load_system_fonts();
+        let installed: BTreeSet<String> =
+            fonts.faces().flat_map(|face| face.families.iter().map(|(name, _)| name.clone())).collect();
+        let [serif, sans, mono] = generic_fonts(&installed);
+        fonts.set_serif_family(serif);
+        fonts.set_sans_serif_family(sans);
+        fonts.set_monospace_family(mono);
         Arc::new(fonts)
     };
     FONTS.get_or_init(find).clone()
 }
 
 fn lay_out(svg: &str) -> Result<Vec<BezPath>, String> {
-    let options = usvg::Options { fontdb: fonts(), ..usvg::Options::default() };
+    let fontdb = fonts();
+    let font_family = fontdb.family_name(&usvg::fontdb::Family::Serif).to_owned();
+    let options = usvg::Options { fontdb, font_family, ..usvg::Options::default() };
     let tree = usvg::Tree::from_str(svg, &options).map_err(|error| error.to_string())?;
     let mut paths = Vec::new();
     let mut groups = vec![tree.root()];

@@ -88,6 +88,13 @@ fn a_grammar_is_a_drawing_with_a_frame() {
 }
 
 #[test]
+fn loops_may_stand_in_loops_without_braces() {
+    let text = "startshape A\nshape A { loop 3 [x 2] loop 4 [y 1 r 10] CIRCLE [s 0.5] }";
+    let (scene, _) = Scene::from_cfdg(text).unwrap();
+    assert_eq!(content(&scene).0.len(), 12);
+}
+
+#[test]
 fn what_no_form_has_is_said_with_its_place() {
     for (text, what) in [
         ("shape A { SQUARE [] }", "1:1: The grammar has no startshape"),
@@ -102,6 +109,7 @@ fn what_no_form_has_is_said_with_its_place() {
         ("startshape A\nshape A { loop 20000 [] { loop 20000 [] SQUARE [] } }", "too many pieces"),
         ("startshape A\nshape A { loop 1.5 [] SQUARE [] }", "a whole number of times"),
         ("startshape A\npath P { LINETO(1) }", "The path command 'LINETO'"),
+        ("startshape A\nshape A { loop 1000000 [] SQUARE [] }", "20000 times at most"),
         ("import other.cfdg", "takes in other files"),
         ("/* open", "1:1: A comment does not end"),
         ("startshape A\nshape A { SQUARE [", "An adjustment does not end"),

@@ -141,6 +141,13 @@ fn the_artwork_alone_has_no_marks() {
     assert!(text.contains("<defs><g id=\"leaf\"><path id=\"blade\""), "{text}");
     // Nothing is left to be taken away.
     assert_eq!(clean.artwork_only().unwrap().text(), text);
+    let twice = open(
+        "<svg xmlns='http://www.w3.org/2000/svg' xmlns:a='urn:rinceau:1' xmlns:b=\"urn:rinceau:1\"><path b:spacing='3' d='M0,0'/></svg>",
+    );
+    assert_eq!(
+        twice.artwork_only().unwrap().text(),
+        "<svg xmlns='http://www.w3.org/2000/svg'><path d='M0,0'/></svg>"
+    );
     let plain = open("<svg xmlns='http://www.w3.org/2000/svg'><!-- rinceau --><path d='M0,0'/></svg>");
     assert_eq!(plain.artwork_only().unwrap().text(), plain.text());
 }
@@ -165,6 +172,13 @@ fn flat_drawings_are_paths_in_units_of_the_page() {
     );
     let (flat, notes) = nested.flat().unwrap();
     assert!(notes.is_empty() && flat.text().contains("stroke-width:1"), "{}", flat.text());
+    let doubtful = open(
+        r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><path id="bad" d="M0,0 L"/><svg width="3" height="3"><path id="wide" d="M0,0H9" stroke="red" transform="scale(1 3)"/></svg></svg>"#,
+    );
+    let (partial, lost) = doubtful.flat().unwrap();
+    assert!(partial.text().contains("M0,0L9,0") && !partial.text().contains("bad"), "{}", partial.text());
+    assert_eq!(lost.len(), 3, "{lost:?}");
+    assert!(lost[0].starts_with("'bad' is left out: ") && lost[1].contains("1 nested pages"), "{lost:?}");
     let empty = open(r#"<svg xmlns="http://www.w3.org/2000/svg"/>"#);
     assert_eq!(empty.flat().unwrap().0.text(), empty.text());
     // As a whole it reads like a drawing, and its shapes are what they were.

@@ -51,6 +51,14 @@ pub fn converted(
     to: &str,
     finish: Finish,
 ) -> Result<(Vec<u8>, Vec<String>), Error> {
+    let is_scene = matches!(to, "json" | "cfdg" | "colours");
+    if is_scene && (finish.artwork_only || finish.flat) || finish.width > 0 && to != "png" {
+        return Err(Error::new(
+            "unfit-option",
+            format!("What is asked for does not go with the format {to}"),
+            "--artwork-only and --flat make drawings and pictures, and --width is of a png",
+        ));
+    }
     let mut notes = Vec::new();
     let mut content = read(bytes, from, &mut notes)?;
     if finish.artwork_only || finish.flat {

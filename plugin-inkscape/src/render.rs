@@ -2,7 +2,7 @@
 //! process of its own that is ended when its time is over.
 
 use crate::output;
-use rinceau_format::Error;
+use rinceau_format::{Error, generic_fonts};
 use std::io::{Read, Write};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -104,7 +104,16 @@ fn png(svg: &[u8], width: u32) -> Result<Vec<u8>, String> {
     let mut options = usvg::Options::default();
     // Nothing is opened that the drawing points to.
     options.image_href_resolver.resolve_string = Box::new(|_, _| None);
+    options.default_size = usvg::Size::from_wh(300.0, 150.0).unwrap_or(options.default_size);
     options.fontdb_mut().load_system_fonts();
+    let installed =
+        options.fontdb.faces().flat_map(|face| face.families.iter().map(|(name, _)| name.clone())).collect();
+    let [serif, sans, mono] = generic_fonts(&installed);
+    options.font_family.clone_from(&serif);
+    let fonts = options.fontdb_mut();
+    fonts.set_serif_family(serif);
+    fonts.set_sans_serif_family(sans);
+    fonts.set_monospace_family(mono);
     let tree = usvg::Tree::from_data(svg, &options).map_err(|error| error.to_string())?;
     let size = tree.size();
     let wanted = if width > 0 { f64::from(width) } else { f64::from(size.width()) };
@@ -127,7 +136,16 @@ fn pdf(svg: &[u8]) -> Result<Vec<u8>, String> {
     use svg2pdf::usvg;
     let mut options = usvg::Options::default();
     options.image_href_resolver.resolve_string = Box::new(|_, _| None);
+    options.default_size = usvg::Size::from_wh(300.0, 150.0).unwrap_or(options.default_size);
     options.fontdb_mut().load_system_fonts();
+    let installed =
+        options.fontdb.faces().flat_map(|face| face.families.iter().map(|(name, _)| name.clone())).collect();
+    let [serif, sans, mono] = generic_fonts(&installed);
+    options.font_family.clone_from(&serif);
+    let fonts = options.fontdb_mut();
+    fonts.set_serif_family(serif);
+    fonts.set_sans_serif_family(sans);
+    fonts.set_monospace_family(mono);
     let tree = usvg::Tree::from_data(svg, &options).map_err(|error| error.to_string())?;
     // CSS pixels are 1/96 of an inch, and so is the page.
     let page = svg2pdf::PageOptions { dpi: 96.0 };

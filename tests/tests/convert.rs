@@ -85,6 +85,29 @@ fn a_drawing_becomes_every_format() {
     assert_eq!(std::fs::read(out("b.png")).unwrap(), png);
 }
 
+/// Whatever fonts there are, a drawing that names none of them has its text.
+#[test]
+fn text_of_generic_families_is_drawn() {
+    let folder = folder();
+    for family in ["", "font-family='serif'", "font-family='monospace'"] {
+        let text = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' width='90' height='40'><text x='5' y='30' font-size='24' {family}>Abc</text></svg>"
+        );
+        let input = file(&folder, "text.svg", text);
+        let flat = folder.path().join("flat.svg");
+        convert(&input, &flat, &["--flat"]);
+        assert!(std::fs::read_to_string(&flat).unwrap().matches("<path").count() >= 1, "{family}");
+        let (with, without) = (folder.path().join("with.png"), folder.path().join("without.png"));
+        convert(&input, &with, &[]);
+        convert(
+            &file(&folder, "none.svg", "<svg xmlns='http://www.w3.org/2000/svg' width='90' height='40'/>"),
+            &without,
+            &[],
+        );
+        assert_ne!(std::fs::read(&with).unwrap(), std::fs::read(&without).unwrap(), "{family}");
+    }
+}
+
 #[test]
 fn grammars_come_in_and_go_out() {
     let folder = folder();
@@ -129,6 +152,7 @@ fn what_cannot_be_converted_leaves_no_file() {
     let out = folder.path().join("out.svg");
     failed(&[&input, &folder.path().join("out.bmp")], "[unknown-format]");
     failed(&[&input, &folder.path().join("out.cfdg")], "[no-form]");
+    failed(&[&input, &folder.path().join("out.json"), Path::new("--flat")], "[unfit-option]");
     failed(&[&file(&folder, "bad.json", "{\"rinceau\":1}"), &out], "[broken-json]");
     failed(&[&file(&folder, "bad.cfdg", "shape"), &out], "[broken-cfdg]");
     failed(

@@ -13,6 +13,8 @@ use std::collections::{BTreeMap, HashMap};
 
 /// Steps of loops, and pieces of a grammar, at most.
 const MOST_PIECES: usize = 20_000;
+/// Loops in loops at most.
+const DEEPEST: usize = 50;
 /// A longer text is no grammar that anybody wrote.
 const LONGEST: usize = 4 << 20;
 
@@ -162,7 +164,6 @@ impl<'t> Grammar<'t> {
 
     /// The pieces between braces.
     fn block(&mut self, depth: usize) -> Result<Vec<(Piece<'t>, Adjust)>, Error> {
-        const DEEPEST: usize = 50;
         self.words.expect("{")?;
         let mut pieces = Vec::new();
         while !self.words.take("}") {
@@ -170,28 +171,38 @@ impl<'t> Grammar<'t> {
             if self.pieces > MOST_PIECES || depth > DEEPEST {
                 return Err(self.words.unexpected("The grammar has too many pieces"));
             }
-            let is_loop = self.words.take("loop");
-            let count = self.words.number();
-            match (is_loop, count) {
-                (_, Some(count)) => {
-                    if !is_loop {
-                        self.words.expect("*")?;
-                    }
-                    if !(0.0..=MOST_PIECES as f64).contains(&count) || count.fract() != 0.0 {
-                        return Err(self.words.unexpected("A loop goes round a whole number of times"));
-                    }
-                    let each = self.adjust()?;
-                    let inside = match self.words.peek() {
-                        Some("{") => self.block(depth + 1)?,
-                        _ => vec![self.piece()?],
-                    };
-                    pieces.push((Piece::Loop(count as usize, each, inside), Adjust::NONE));
-                }
-                (true, None) => return Err(self.words.unexpected("A loop goes round a number of times")),
-                (false, None) => pieces.push(self.piece()?),
-            }
+            pieces.push(self.item(depth)?);
         }
         Ok(pieces)
+    }
+
+    /// A shape, or a loop.
+    fn item(&mut self, depth: usize) -> Result<(Piece<'t>, Adjust), Error> {
+        if depth > DEEPEST {
+            return Err(self.words.unexpected("The grammar has too many pieces"));
+        }
+        let is_loop = self.words.take("loop");
+        let Some(count) = self.words.number() else {
+            if is_loop {
+                return Err(self.words.unexpected("A loop goes round a number of times"));
+            }
+            return self.piece();
+        };
+        if !is_loop {
+            self.words.expect("*")?;
+        }
+        if !(0.0..=f64::MAX).contains(&count) || count.fract() != 0.0 {
+            return Err(self.words.unexpected("A loop goes round a whole number of times"));
+        }
+        if count > MOST_PIECES as f64 {
+            return Err(self.words.unexpected(&format!("A loop goes round {MOST_PIECES} times at most")));
+        }
+        let each = self.adjust()?;
+        let inside = match self.words.peek() {
+            Some("{") => self.block(depth + 1)?,
+            _ => vec![self.item(depth + 1)?],
+        };
+        Ok((Piece::Loop(count as usize, each, inside), Adjust::NONE))
     }
 
     /// A shape with its adjustment.

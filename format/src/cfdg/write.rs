@@ -17,7 +17,7 @@ impl Scene {
             self.forms.iter().enumerate().map(|(i, form)| name(i, &form.source.id)).collect();
         let to_grammar = Affine::scale_non_uniform(1.0 / UNIT, -1.0 / UNIT);
         let (mut paths, mut shapes) = (String::new(), String::new());
-        for (form, own) in self.forms.iter().zip(&names) {
+        for (index, (form, own)) in self.forms.iter().zip(&names).enumerate() {
             if !form.overrides.is_empty() {
                 let set: Vec<&str> = form.overrides.keys().map(String::as_str).collect();
                 notes.push(format!(
@@ -41,7 +41,7 @@ impl Scene {
                         }
                     }
                     FormItem::Clone(clone) => {
-                        if clone.transform.determinant().abs() >= 1.0 {
+                        if clone.form == index && clone.transform.determinant().abs() >= 1.0 {
                             notes.push(format!(
                                 "The clone '{}' is not smaller than its form: as a grammar it never ends",
                                 clone.source.id

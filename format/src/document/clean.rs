@@ -6,7 +6,6 @@ use crate::error::Error;
 use crate::look::ARROW;
 use crate::number::{decimals_for, path_data};
 use crate::read::has_mark;
-use crate::scene::Selection;
 use crate::units::mean_scale;
 use crate::vocabulary::{NAMESPACE, Role, XLINK};
 use crate::write::{attribute, escaped};
@@ -65,9 +64,10 @@ impl Document {
         let ours = node.attributes().filter(|a| a.namespace() == Some(NAMESPACE)).map(|a| a.range());
         let class = node.plain_node("class").filter(|class| class.value().contains("rinceau-"));
         let tag = range.start..range.start + start_tag_end(&self.text[range.clone()]).0;
-        let declared = declaration(&self.text[tag.clone()]);
-        let own: Vec<Range<usize>> =
-            ours.chain(declared.map(|found| tag.start + found.start..tag.start + found.end)).collect();
+        let declared = declarations(&self.text[tag.clone()]);
+        let own: Vec<Range<usize>> = ours
+            .chain(declared.into_iter().map(|found| tag.start + found.start..tag.start + found.end))
+            .collect();
         if own.is_empty() && class.is_none() {
             return Ok(());
         }
@@ -109,8 +109,14 @@ impl Document {
         })?;
         let Some((p, whole)) = whole else { return Ok((clean, Vec::new())) };
         let whole = self.with_text(whole);
-        let scene = whole.scene(&Selection::default())?;
+        // What cannot be read is left out, and said.
+        let (scene, problems) = whole.check()?;
         let mut lost: BTreeMap<&str, usize> = BTreeMap::new();
+        let pages = whole.parse(|xml| {
+            let clips = |node: &Node| node.plain("overflow").is_none_or(|overflow| overflow == "hidden");
+            let pages = xml.root_element().descendants().skip(1);
+            Ok(pages.filter(|node| matches!(node.tag_name().name(), "svg" | "symbol") && clips(node)).count())
+        })?;
         let decimals = decimals_for(scene.view.size().max_side());
         let mut text = head + ">" + self.newline();
         for part in scene.fixed.iter().flat_map(|fixed| &fixed.parts) {
@@ -120,7 +126,12 @@ impl Document {
             }
             let mut path = part.path.clone();
             path.apply_affine(part.transform);
-            let mut style = part.style.scaled(mean_scale(part.transform), decimals);
+            let is_fixed_width = part.style.get("vector-effect") == Some("non-scaling-stroke");
+            if part.style.stroke_width().is_some() && !is_fixed_width && !is_even(part.transform) {
+                *lost.entry("slanted stroke (Path > Stroke to Path keeps it)").or_default() += 1;
+            }
+            let scale = if is_fixed_width { 1.0 } else { mean_scale(part.transform) };
+            let mut style = part.style.scaled(scale, decimals);
             for name in ["fill", "stroke"] {
                 if style.get(name).is_some_and(|paint| paint.contains("url(")) {
                     *lost.entry("gradient or pattern").or_default() += 1;
@@ -142,13 +153,30 @@ impl Document {
         text.push_str(&format!("</{p}svg>"));
         text.push_str(self.newline());
         let flat = Document::with_limits(crate::encoding::encode(&text, self.encoding), self.limits.clone())?;
-        let mut notes = scene.warnings;
+        let mut notes: Vec<String> = problems
+            .iter()
+            .map(|problem| match (problem.is_error, &problem.id) {
+                (true, Some(id)) => format!("'{id}' is left out: {}", problem.error.sentence()),
+                (true, None) => format!("Something is left out: {}", problem.error.sentence()),
+                (false, _) => problem.error.sentence().to_owned(),
+            })
+            .collect();
+        if pages > 0 {
+            notes.push(format!("{pages} nested pages or symbols no longer cut off what they show"));
+        }
         notes.extend(
             lost.into_iter()
                 .map(|(what, count)| format!("{count} shapes lose their {what}: paths have none")),
         );
         Ok((flat, notes))
     }
+}
+
+/// True if a map makes strokes as wide in all directions.
+fn is_even(map: kurbo::Affine) -> bool {
+    let [a, b, c, d, ..] = map.as_coeffs();
+    let (x, y) = (a.hypot(b), c.hypot(d));
+    (x - y).abs() <= 1e-3 * x.max(y) && (a * c + b * d).abs() <= 1e-3 * x * y
 }
 
 /// Where nodes start that are no artwork, outermost first.
@@ -241,11 +269,12 @@ fn referred_to(root: Node, removed: &HashSet<usize>) -> HashSet<usize> {
     kept
 }
 
-/// Where a tag declares our namespace.
-fn declaration(tag: &str) -> Option<Range<usize>> {
+/// Where a tag declares our namespace, under whatever prefixes.
+fn declarations(tag: &str) -> Vec<Range<usize>> {
+    let mut found = Vec::new();
     let mut from = 0;
-    while let Some(found) = tag[from..].find("xmlns:") {
-        let start = from + found;
+    while let Some(at) = tag[from..].find("xmlns:") {
+        let start = from + at;
         from = start + 6;
         let Some(equals) = tag[from..].find('=') else { break };
         let value = tag[from + equals + 1..].trim_start();
@@ -253,8 +282,8 @@ fn declaration(tag: &str) -> Option<Range<usize>> {
         let Some(end) = value[1..].find(quote) else { break };
         if &value[1..=end] == NAMESPACE {
             let open = tag.len() - value.len();
-            return Some(start..open + end + 2);
+            found.push(start..open + end + 2);
         }
     }
-    None
+    found
 }
