@@ -26,6 +26,9 @@ pub(crate) fn outlines<'a>(
     if !node.descendants().filter_map(|inner| inner.text()).any(is_drawn) {
         return Ok(Vec::new());
     }
+    if !style.get("font-family").is_none_or(has_font) {
+        return Err("its font is not installed".to_owned());
+    }
     let mut svg = String::from("<svg");
     attribute(&mut svg, "xmlns", crate::vocabulary::SVG);
     svg.push_str(" width=\"100\" height=\"100\">");
@@ -81,6 +84,16 @@ fn write_text<'a>(
     }
     svg.push_str(&format!("</{name}>"));
     Ok(())
+}
+
+/// True if one of these families is generic or installed: another font would be a guess.
+fn has_font(families: &str) -> bool {
+    const GENERIC: [&str; 5] = ["serif", "sans-serif", "monospace", "cursive", "fantasy"];
+    let fonts = fonts();
+    families.split(',').map(|name| name.trim().trim_matches(['"', '\''])).any(|name| {
+        let is_it = |face: &usvg::fontdb::FaceInfo| face.families.iter().any(|(known, _)| known == name);
+        GENERIC.contains(&name) || fonts.faces().any(is_it)
+    })
 }
 
 /// Installed fonts for the generic families `serif`, `sans-serif` and `monospace`: the first of those that
