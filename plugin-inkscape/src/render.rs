@@ -99,21 +99,32 @@ pub fn work(picture: &str, width: u32) -> Result<(), String> {
     output::write(None, &bytes).map_err(|error| error.to_string())
 }
 
+/// How a drawing is read, by either of the two versions of usvg that the renderers are built on.
+macro_rules! options {
+    ($usvg:ident) => {{
+        let mut options = $usvg::Options::default();
+        // Nothing is opened that the drawing points to.
+        options.image_href_resolver.resolve_string = Box::new(|_, _| None);
+        options.default_size = $usvg::Size::from_wh(300.0, 150.0).unwrap_or(options.default_size);
+        options.fontdb_mut().load_system_fonts();
+        let installed = options
+            .fontdb
+            .faces()
+            .flat_map(|face| face.families.iter().map(|(name, _)| name.clone()))
+            .collect();
+        let [serif, sans, mono] = generic_fonts(&installed);
+        options.font_family.clone_from(&serif);
+        let fonts = options.fontdb_mut();
+        fonts.set_serif_family(serif);
+        fonts.set_sans_serif_family(sans);
+        fonts.set_monospace_family(mono);
+        options
+    }};
+}
+
 fn png(svg: &[u8], width: u32) -> Result<Vec<u8>, String> {
     use resvg::{tiny_skia, usvg};
-    let mut options = usvg::Options::default();
-    // Nothing is opened that the drawing points to.
-    options.image_href_resolver.resolve_string = Box::new(|_, _| None);
-    options.default_size = usvg::Size::from_wh(300.0, 150.0).unwrap_or(options.default_size);
-    options.fontdb_mut().load_system_fonts();
-    let installed =
-        options.fontdb.faces().flat_map(|face| face.families.iter().map(|(name, _)| name.clone())).collect();
-    let [serif, sans, mono] = generic_fonts(&installed);
-    options.font_family.clone_from(&serif);
-    let fonts = options.fontdb_mut();
-    fonts.set_serif_family(serif);
-    fonts.set_sans_serif_family(sans);
-    fonts.set_monospace_family(mono);
+    let options = options!(usvg);
     let tree = usvg::Tree::from_data(svg, &options).map_err(|error| error.to_string())?;
     let size = tree.size();
     let wanted = if width > 0 { f64::from(width) } else { f64::from(size.width()) };
@@ -134,18 +145,7 @@ fn png(svg: &[u8], width: u32) -> Result<Vec<u8>, String> {
 
 fn pdf(svg: &[u8]) -> Result<Vec<u8>, String> {
     use svg2pdf::usvg;
-    let mut options = usvg::Options::default();
-    options.image_href_resolver.resolve_string = Box::new(|_, _| None);
-    options.default_size = usvg::Size::from_wh(300.0, 150.0).unwrap_or(options.default_size);
-    options.fontdb_mut().load_system_fonts();
-    let installed =
-        options.fontdb.faces().flat_map(|face| face.families.iter().map(|(name, _)| name.clone())).collect();
-    let [serif, sans, mono] = generic_fonts(&installed);
-    options.font_family.clone_from(&serif);
-    let fonts = options.fontdb_mut();
-    fonts.set_serif_family(serif);
-    fonts.set_sans_serif_family(sans);
-    fonts.set_monospace_family(mono);
+    let options = options!(usvg);
     let tree = usvg::Tree::from_data(svg, &options).map_err(|error| error.to_string())?;
     // CSS pixels are 1/96 of an inch, and so is the page.
     let page = svg2pdf::PageOptions { dpi: 96.0 };
