@@ -121,8 +121,15 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// Escapes what a terminal or a dialog could be fooled by: C0 and C1 controls and the
-/// bidirectional overrides. Long text is cut, so that a message stays a sentence.
+/// True for what a terminal or a dialog could be fooled by: C0 and C1 controls and the bidirectional
+/// overrides.
+pub fn is_deceptive(c: char) -> bool {
+    let bidirectional =
+        matches!(c, '\u{200E}' | '\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}');
+    c.is_control() || bidirectional
+}
+
+/// Escapes what is [deceptive](is_deceptive). Long text is cut, so that a message stays a sentence.
 pub fn printable(text: &str) -> String {
     const LONGEST: usize = 600;
     let mut out = String::with_capacity(text.len());
@@ -131,9 +138,7 @@ pub fn printable(text: &str) -> String {
             out.push('…');
             break;
         }
-        let bidirectional =
-            matches!(c, '\u{200E}' | '\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}');
-        if c.is_control() || bidirectional {
+        if is_deceptive(c) {
             out.extend(c.escape_unicode());
         } else {
             out.push(c);

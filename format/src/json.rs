@@ -74,7 +74,12 @@ impl Scene {
                 source.label.clone_from(&source.id);
             }
         });
-        if let Some(what) = fault(&scene, &limits) {
+        let symbols = scene.elements.iter_mut().map(|one| (&mut one.symbol, &one.source));
+        let examples = scene.references.iter_mut().flat_map(|one| &mut one.examples);
+        for (symbol, source) in symbols.chain(examples.map(|one| (&mut one.symbol, &one.source))) {
+            *symbol = Some(symbol.trim()).filter(|name| !name.is_empty()).unwrap_or(&source.id).to_owned();
+        }
+        if let Some(what) = hollow(&mut scene).or_else(|| fault(&scene, &limits)) {
             return wrong(what);
         }
         set_roots(&mut scene.forms);
@@ -112,6 +117,25 @@ pub(crate) fn each_source(scene: &mut Scene, mut visit: impl FnMut(&mut Source))
         visit(&mut reference.source);
         reference.examples.iter_mut().for_each(|one| visit(&mut one.source));
     }
+}
+
+/// An object without a name or with nothing in it, in words.
+fn hollow(scene: &mut Scene) -> Option<String> {
+    let mut is_named = true;
+    each_source(scene, |source| is_named &= !source.id.trim().is_empty());
+    if !is_named {
+        return Some("An object of it has no id".to_owned());
+    }
+    let containers = scene.containers.iter().map(|one| (&one.source, one.outlines.is_empty()));
+    let fixed = scene.fixed.iter().map(|one| (&one.source, one.parts.is_empty()));
+    let elements = scene.elements.iter().map(|one| (&one.source, one.template.parts.is_empty()));
+    let forms = scene.forms.iter().map(|one| (&one.source, one.items.is_empty()));
+    let references = scene.references.iter().map(|one| (&one.source, one.examples.is_empty()));
+    let examples = scene.references.iter().flat_map(|one| &one.examples);
+    let examples = examples.map(|one| (&one.source, one.parts.is_empty()));
+    let mut all = containers.chain(fixed).chain(elements).chain(forms).chain(references).chain(examples);
+    let (source, _) = all.find(|(_, is_empty)| *is_empty)?;
+    Some(format!("'{}' has nothing in it", source.id))
 }
 
 /// What of a scene no drawing could have said, in words.
@@ -175,6 +199,19 @@ fn fault(scene: &Scene, limits: &Limits) -> Option<String> {
         if let Some(name) = overrides.keys().find(|name| !is_name(name) || *name == "role") {
             return Some(format!("'{}' sets '{name}', which is no parameter's name", source.id));
         }
+    }
+    let is_word = |word: &String| !word.is_empty() && !word.contains(char::is_whitespace);
+    if let Some(element) = scene.elements.iter().find(|one| !one.sets.iter().all(is_word)) {
+        return Some(format!("'{}' is in a set whose name is not one word", element.source.id));
+    }
+    let is_id = |id: &String| is_word(id) && !id.contains([',', ';']);
+    if let Some(reference) =
+        scene.references.iter().find(|one| !one.flips.iter().all(|(a, b)| is_id(a) && is_id(b)))
+    {
+        return Some(format!(
+            "'{}' flips an edge between objects that no id could name",
+            reference.source.id
+        ));
     }
     for clone in scene.forms.iter().flat_map(|form| &form.items).filter_map(|item| match item {
         FormItem::Clone(clone) => Some(clone),

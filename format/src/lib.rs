@@ -42,7 +42,7 @@ mod xml;
 
 pub use artwork::{Artwork, Group, Item, Part, Pieces, Step, Stream, Symbol, SymbolItem};
 pub use document::{Document, Layer, Problem};
-pub use error::{Error, Position, printable};
+pub use error::{Error, Position, is_deceptive, printable};
 pub use limits::Limits;
 pub use number::{decimals_for, path_data, write_number};
 pub use recipe::Recipe;

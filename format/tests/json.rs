@@ -210,6 +210,21 @@ proptest! {
 }
 
 #[test]
+fn an_object_without_a_symbol_is_one_of_itself() {
+    let parts = "\"parts\":[{\"path\":\"M0,0L1,1\",\"style\":{}}]";
+    let json = format!(
+        "{{\"rinceau\":1,\"scene\":{{\"view\":[0,0,9,9],\"px_per_unit\":1,\"references\":[{{\"source\":{{\"id\":\"r\"}},\
+         \"examples\":[{{\"source\":{{\"id\":\"a\"}},\"symbol\":\" \",{parts}}},\
+         {{\"source\":{{\"id\":\"b\"}},\"symbol\":\" c \",{parts}}}]}}]}}}}"
+    );
+    let scene = Scene::from_json(&json).unwrap();
+    let symbols: Vec<&str> = scene.references[0].examples.iter().map(|one| &one.symbol[..]).collect();
+    assert_eq!(symbols, ["a", "c"]);
+    let back = Document::from_scene(&scene).unwrap().scene(&Selection::default()).unwrap();
+    assert_eq!(back.to_json(), scene.to_json());
+}
+
+#[test]
 fn what_is_no_scene_is_said_with_its_place() {
     let refused = |json: &str| Scene::from_json(json).unwrap_err().to_string();
     let scene = |inside: &str| {
@@ -231,7 +246,9 @@ fn what_is_no_scene_is_said_with_its_place() {
         ),
         (scene(&format!(",\"sprays\":[{{{source},\"path\":\"M0,0\",\"width\":-1}}]")), "no width"),
         (
-            scene(&format!(",\"containers\":[{{{source},\"outlines\":[],\"overrides\":{{\"a b\":\"1\"}}}}]")),
+            scene(&format!(
+                ",\"containers\":[{{{source},\"outlines\":[{{\"path\":\"M0,0L1,1\"}}],\"overrides\":{{\"a b\":\"1\"}}}}]"
+            )),
             "'a' sets 'a b', which is no parameter's name",
         ),
         (
@@ -251,6 +268,23 @@ fn what_is_no_scene_is_said_with_its_place() {
                 ",\"fixed\":[{{{source},\"parts\":[{{\"path\":\"M0,0L1,1\",\"style\":{{\"font\":\"x\"}}}}]}}]"
             )),
             "'font' is no property of paint",
+        ),
+        (scene(",\"seeds\":[{\"source\":{\"id\":\" \"},\"at\":[1,2]}]"), "has no id"),
+        (scene(&format!(",\"fixed\":[{{{source},\"parts\":[]}}]")), "'a' has nothing in it"),
+        (scene(&format!(",\"forms\":[{{{source},\"items\":[]}}]")), "'a' has nothing in it"),
+        (scene(&format!(",\"references\":[{{{source},\"examples\":[]}}]")), "'a' has nothing in it"),
+        (
+            scene(&format!(
+                ",\"references\":[{{{source},\"examples\":[{{{source},\"symbol\":\"s\",\"parts\":[]}}]}}]"
+            )),
+            "'a' has nothing in it",
+        ),
+        (
+            scene(&format!(
+                ",\"references\":[{{{source},\"flips\":[[\"b c\",\"d\"]],\"examples\":[{{{source},\"symbol\":\"s\",\
+                 \"parts\":[{{\"path\":\"M0,0L1,1\",\"style\":{{}}}}]}}]}}]"
+            )),
+            "'a' flips an edge between objects that no id could name",
         ),
     ] {
         let error = refused(&json);

@@ -1,7 +1,7 @@
 //! `rinceau check`: what the marks in a drawing mean, and everything that is wrong with them.
 
 use crate::output;
-use rinceau_format::{Document, Error, Position, Problem, Scene, Source, printable};
+use rinceau_format::{Document, Error, Position, Problem, Scene, Source, is_deceptive, printable};
 use serde_json::json;
 use std::fmt::Write;
 use std::io::IsTerminal;
@@ -192,15 +192,11 @@ fn snippet(text: &str, at: Position) -> String {
     let column = at.column.saturating_sub(1);
     let skipped = column.saturating_sub(BEFORE);
     // What a terminal could be fooled by is no part of a snippet.
-    let show = |c: char| if c.is_control() || is_bidirectional(c) { ' ' } else { c };
+    let show = |c: char| if is_deceptive(c) { ' ' } else { c };
     let shown: String = line.chars().skip(skipped).take(LENGTH).map(show).collect();
     let number = at.line.to_string();
     let margin = " ".repeat(number.len());
     format!(" {number} | {shown}\n {margin} | {}^\n", " ".repeat(column - skipped))
-}
-
-fn is_bidirectional(c: char) -> bool {
-    matches!(c, '\u{200E}' | '\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
 }
 
 #[cfg(test)]
