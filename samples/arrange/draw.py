@@ -472,7 +472,9 @@ def feathers():
     places = lattice(8, 8, 19, 19)
     # Painted aslant, since the wing's feathers point to the right and downwards.
     places.sort(key=lambda p: -(p[0] + 0.7 * p[1]))
-    sample.example([feather(x + 28, y + 12, rng.choice(tones)) for x, y in places])
+    # Drawn with a free hand.
+    sample.example([feather(x + 28 + rng.uniform(-1, 1), y + 12 + rng.uniform(-1, 1), rng.choice(tones))
+                    for x, y in places])
     arm = ("M244,350 C218,200 320,52 440,44 C560,36 650,120 690,262 "
            "C612,190 540,124 448,124 C360,124 292,200 244,350 Z")
     sample.add(path(arm, fill=mix(DUSK[0], DUSK[1], 0.25)))
@@ -518,7 +520,9 @@ def euro():
     tones = (MEADOW[0], MEADOW[1], mix(MEADOW[0], MEADOW[1], 0.5), mix(MEADOW[1], MEADOW[2], 0.5), MEADOW[2])
     places = lattice(17, 13, 8.5, 9.5)
     tone = in_turn(rng, tones, places, 11)
-    sample.example([small_leaf(x + 12, y + 8, t) for (x, y), t in zip(places, tone)])
+    # Drawn with a free hand.
+    sample.example([small_leaf(x + 12 + rng.uniform(-0.15, 0.15), y + 8 + rng.uniform(-0.15, 0.15), t)
+                    for (x, y), t in zip(places, tone)])
     letters = ["M314,150 C262,144 238,190 238,240 C238,296 262,338 318,330 M240,240 H306",
                "M372,196 V288 C372,346 444,346 444,288 V196",
                "M498,338 V240 C498,208 514,192 540,194",

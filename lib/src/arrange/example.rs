@@ -12,6 +12,10 @@ use std::collections::{BTreeMap, BTreeSet};
 const SKEWED: f64 = 2.0 * std::f64::consts::FRAC_PI_3;
 /// Elements that are farther from each other than this share of their sizes are not too near.
 const ROOM: f64 = 1.12;
+/// An element is missing where it is by this much emptier than anywhere in the example, and nothing is
+/// nearer than this share of the least distance between two symbols.
+const HOLLOW: f64 = 1.2;
+const NEAREST: f64 = 0.9;
 /// Elements of an example at most: each place is compared with all of them.
 pub(super) const MOST_EXAMPLES: usize = 2000;
 /// The rings of so many are compared with each other.
@@ -50,6 +54,8 @@ pub(super) struct Analysis {
     /// Mean and least length of edges.
     pub mean: f64,
     pub least: f64,
+    /// Where nothing is nearer than this, an element is missing.
+    pub hollow: f64,
     /// Least distance between two of each pair of symbols, and the largest of these.
     apart: Vec<f64>,
     pub reach: f64,
@@ -172,9 +178,13 @@ impl Analysis {
         }
         let (apart, depths) = spaces(&elements, symbols.len());
         let reach = apart.iter().copied().fold(mean, f64::max);
+        let widest = triangles.iter().map(|t| circumradius(t.map(|i| points[i]))).fold(0.0, f64::max);
+        let nearest = apart.iter().copied().fold(f64::INFINITY, f64::min);
+        let hollow = f64::max(HOLLOW * widest, NEAREST * nearest);
         let edges = edges.into_iter().collect();
+        let differences = Vec::new();
         let mut analysis =
-            Analysis { elements, symbols, mean, least, apart, reach, depths, differences: Vec::new(), edges };
+            Analysis { elements, symbols, mean, least, hollow, apart, reach, depths, differences, edges };
         analysis.compare();
         Ok(analysis)
     }
@@ -188,6 +198,7 @@ impl Analysis {
         let both = (x * y).sqrt();
         stretched.mean *= both;
         stretched.least *= both.min(1.0);
+        stretched.hollow *= both;
         stretched.apart.iter_mut().for_each(|apart| *apart *= both.min(1.0));
         stretched
     }
@@ -266,6 +277,12 @@ fn sides([a, b, c]: [usize; 3]) -> [(usize, usize); 3] {
 
 fn sorted((a, b): (usize, usize)) -> (usize, usize) {
     (a.min(b), a.max(b))
+}
+
+/// The radius of the circle through three points: of a triangle of neighbours, how empty it is there.
+fn circumradius([a, b, c]: [Point; 3]) -> f64 {
+    let area = (b - a).cross(c - a).abs();
+    0.5 * a.distance(b) * b.distance(c) * c.distance(a) / area.max(f64::MIN_POSITIVE)
 }
 
 fn is_skewed(a: Point, b: Point, c: Point) -> bool {

@@ -133,6 +133,60 @@ impl<'a> Arrangement<'a> {
         self.heap.push(Reverse((Distance(0.0), seed)));
     }
 
+    /// Takes elements out again, sorted ones.
+    pub fn take_out(&mut self, gone: &[u32]) {
+        for &i in gone {
+            self.objects[i as usize].is_gone = true;
+            self.detach(i);
+        }
+        self.grown.retain(|i| gone.binary_search(i).is_err());
+    }
+
+    /// The middle of the room around a place: as far from everything as steps from there lead.
+    pub fn midst(&self, from: Point, reach: f64) -> Point {
+        const STEPS: usize = 12;
+        let mut at = from;
+        for _ in 0..STEPS {
+            let wide = 1.5 * reach;
+            let Some(near) = self.nearest(u32::MAX, at, wide) else { break };
+            let p = self.at(near, at);
+            let next =
+                at + (0.3 * (wide - p.distance(at)) / p.distance(at).max(f64::MIN_POSITIVE)) * (at - p);
+            if !self.ground.allows(next) || self.ground.divides(at, next) {
+                break;
+            }
+            at = next;
+        }
+        // Steps may lead back.
+        if self.is_empty_at(at, reach) { at } else { from }
+    }
+
+    /// A seed where there is room left, joined to what stands around it.
+    pub fn start_amid(&mut self, at: Point) {
+        /// Elements nearer than so many mean edges are around.
+        const AROUND: f64 = 2.0;
+        let reach = AROUND * self.example.mean;
+        let mut around: Vec<(Distance, u32, Point)> = Vec::new();
+        self.grid.visit(at, reach, |p, other| {
+            let distance = p.distance(at);
+            if distance < reach && !self.objects[other as usize].is_gone {
+                around.push((Distance(distance), other, p));
+            }
+            true
+        });
+        if around.is_empty() {
+            return self.start(at);
+        }
+        around.sort_unstable_by_key(|&(distance, other, _)| (distance, other));
+        let new = self.sow(at, None);
+        for (_, other, p) in around {
+            let is_free = !self.ground.divides(at, p) && !self.collides((new, other), at, p);
+            if is_free {
+                self.connect(new, other);
+            }
+        }
+    }
+
     /// True if nothing is near a place.
     pub fn is_empty_at(&self, at: Point, reach: f64) -> bool {
         !self.grid.any_within(at, reach, |_, other| !self.objects[other as usize].is_gone)

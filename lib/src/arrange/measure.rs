@@ -4,7 +4,6 @@ use super::example::Analysis;
 use super::ground::Ground;
 use super::grow::Arrangement;
 use super::{part, relax};
-use kurbo::Point;
 use std::collections::BTreeMap;
 
 /// What one arrangement comes to.
@@ -18,7 +17,7 @@ pub(super) struct Likeness {
     neighbours: f64,
     /// Share of neighbours that are copies of the same element of the example.
     repeats: f64,
-    /// Standard deviation of edges over their mean, and that of the example's.
+    /// Standard deviation of edges over their mean, and that of the example's: all edges of both.
     spacing: f64,
     example_spacing: f64,
     /// Pairs that lie deeper in each other than the example's do.
@@ -37,19 +36,12 @@ impl Likeness {
                 let (Some(a), Some(b)) = (copies(i), copies(j)) else { continue };
                 pairs.push(sorted(symbol(a), symbol(b)));
                 same += f64::from(u8::from(a == b));
-                // Edges of no ring close what is left over, as the skewed ones that the example is without.
-                let other = &arrangement.objects[j as usize];
-                let is_of_ring =
-                    own.ring.iter().any(|link| link.to == j) || other.ring.iter().any(|link| link.to == i);
-                if !is_of_ring {
-                    continue;
-                }
                 lengths.push(ground.near(arrangement.objects[j as usize].at, own.at).distance(own.at));
             }
         }
         let edges = pairs.len().max(1) as f64;
         let grown = arrangement.grown.iter().filter_map(|&i| copies(i)).map(symbol);
-        let at = |i: usize| -> Point { example.elements[i].at };
+        let at = |i: usize| example.elements[i].at;
         let drawn: Vec<f64> = example.edges.iter().map(|&(a, b)| at(a).distance(at(b))).collect();
         let drawn_pairs = example.edges.iter().map(|&(a, b)| sorted(symbol(a), symbol(b)));
         Likeness {

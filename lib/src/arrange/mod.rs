@@ -398,13 +398,13 @@ impl One<'_> {
             // Somewhere that nothing has come to.
             let place = loop {
                 match holes.pop() {
-                    Some(at) if arrangement.is_empty_at(at, example.mean) => break Some(at),
+                    Some(at) if arrangement.is_empty_at(at, example.hollow) => break Some(at),
                     Some(_) => {}
                     None => break None,
                 }
             };
             match place {
-                Some(at) => arrangement.start(at),
+                Some(at) => arrangement.start_amid(arrangement.midst(at, example.hollow)),
                 None => break,
             }
         }
@@ -425,9 +425,9 @@ impl One<'_> {
 
 /// Places all over the ground, to be looked at when growth has come to an end; the first come last.
 fn holes(ground: &Ground, example: &Analysis) -> Vec<Point> {
-    let step = 1.2 * example.mean;
+    let step = 0.7 * example.hollow;
     let bounds = ground.bounds;
-    let count = |side: f64| ((side / step).ceil() as usize).clamp(1, 2000);
+    let count = |side: f64| ((side / step).ceil() as usize).clamp(1, 4000);
     let (columns, rows) = (count(bounds.width()), count(bounds.height()));
     let place = |i: usize| {
         let (x, y) = ((i % columns) as f64 + 0.5, (i / columns) as f64 + 0.5);

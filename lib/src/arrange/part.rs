@@ -12,8 +12,8 @@ const NEAR: f64 = 0.9;
 const TOO_NEAR: f64 = 0.7;
 /// Elements deeper in each other than the example's, by more than this share of a mean edge, collide.
 const DEEP: f64 = 0.01;
-/// Rounds of moving apart.
-const ROUNDS: usize = 20;
+/// Rounds of moving apart: what is crowded in the midst of many comes out of it slowly.
+const ROUNDS: usize = 120;
 
 /// How two elements stand to each other.
 struct Pair {
@@ -116,7 +116,7 @@ pub(super) fn part(arrangement: &mut Arrangement, fixed: &[bool], example: &Anal
         }
         if round == ROUNDS {
             gone.sort_unstable();
-            arrangement.grown.retain(|i| gone.binary_search(i).is_err());
+            arrangement.take_out(&gone);
             return;
         }
         if moves.is_empty() {

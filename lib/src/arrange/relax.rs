@@ -41,11 +41,11 @@ fn terms(objects: &[Object], ground: &Ground, fixed: &[bool]) -> Vec<Term> {
     terms
 }
 
-/// Squared errors of the ring of an object, and how many neighbours it has.
+/// Squared errors of the ring of an object, and how many neighbours are still there.
 pub(super) fn ring_error(objects: &[Object], object: &Object, ground: &Ground) -> (f64, f64) {
     let apart = |link: &Link| ground.near(objects[link.to as usize].at, object.at) - object.at;
-    let sum = object.ring.iter().map(|link| (link.offset - apart(link)).hypot2()).sum();
-    (sum, object.ring.len() as f64)
+    let links = object.ring.iter().filter(|link| !objects[link.to as usize].is_gone);
+    links.fold((0.0, 0.0), |(sum, count), link| (sum + (link.offset - apart(link)).hypot2(), count + 1.0))
 }
 
 /// Root of the mean square by which rings differ from the example's.
