@@ -147,7 +147,9 @@ impl Drawing {
             let points = || element.extent.points.iter().map(|v| varied * v.to_point()).map(Point::to_vec2);
             let radius = points().map(|v| v.hypot()).fold(0.0, f64::max);
             let of = drawn[copy].source.id.clone();
-            for at in ground.images(object.at, radius) {
+            let mut images = Vec::new();
+            ground.each_image(object.at, radius, |at| images.push(at));
+            for at in images {
                 let hull: Vec<Point> = points().map(|v| at + v).collect();
                 if outline.is_some_and(|outline| !outline.shows(&params.edge, at, &hull, radius))
                     || params.edge == "inside" && ground.is_cut(&hull)
@@ -223,6 +225,7 @@ fn as_neighbours(arrangement: &Arrangement) -> Vec<f64> {
         for link in object.ring.iter().filter(|link| arrangement.objects[link.to as usize].copy.is_some()) {
             let above = if link.element > copy { 1.0 } else { -1.0 };
             terms.push((i, link.to, Vec2::new(above, 0.0)));
+            terms.push((link.to, i, Vec2::new(-above, 0.0)));
         }
     }
     let mut fixed: Vec<bool> = vec![false; arrangement.objects.len()];

@@ -198,9 +198,8 @@ impl<'a> Arrangement<'a> {
     }
 
     fn enter(&mut self, at: Point, object: u32) {
-        for image in self.ground.images(at, NEIGHBOURHOOD * self.example.mean) {
-            self.grid.insert(image, object);
-        }
+        self.ground
+            .each_image(at, NEIGHBOURHOOD * self.example.mean, |image| self.grid.insert(image, object));
     }
 
     fn add(&mut self, at: Point, symbol: Option<usize>) -> u32 {

@@ -3,13 +3,15 @@
 use super::example::Analysis;
 use super::ground::Ground;
 use super::grow::{Arrangement, Object};
-use crate::geom::near::PointGrid;
+use crate::geom::near::PointTable;
 use kurbo::Vec2;
 
 /// Nearer than this share of the least distance that two symbols have in the example, elements move
 /// apart; and nearer than that, one of them goes.
 const NEAR: f64 = 0.9;
 const TOO_NEAR: f64 = 0.7;
+/// By less than this share of a mean edge nobody moves: nobody would see it, and it would go on for long.
+const SLACK: f64 = 0.003;
 /// Elements deeper in each other than the example's, by more than this share of a mean edge, collide.
 const DEEP: f64 = 0.01;
 /// Rounds of moving apart: what is crowded in the midst of many comes out of it slowly.
@@ -34,7 +36,7 @@ fn pair(own: &Object, other: &Object, between: Vec2, example: &Analysis) -> Opti
         (away, is_bad) = ((depth - allowed) * out, allowed == 0.0);
     }
     let (distance, least) = (between.hypot(), example.apart(a.symbol, b.symbol));
-    if distance < NEAR * least && away == Vec2::ZERO {
+    if distance < NEAR * least - SLACK * example.mean && away == Vec2::ZERO {
         let way = if distance > 0.0 { -between / distance } else { Vec2::new(1.0, 0.0) };
         away = (NEAR * least - distance) * way;
         is_bad = distance < TOO_NEAR * least;
@@ -52,15 +54,13 @@ fn allowed(example: &Analysis, a: usize, b: usize) -> f64 {
     }
 }
 
-fn grid(arrangement: &Arrangement, ground: &Ground, reach: f64) -> PointGrid {
+fn table(arrangement: &Arrangement, ground: &Ground, reach: f64) -> PointTable {
     let margin = if ground.repeats { 1.3 * reach } else { 0.0 };
-    let mut grid = PointGrid::new(ground.bounds.inflate(margin, margin), reach);
+    let mut points = Vec::with_capacity(arrangement.grown.len());
     for &i in &arrangement.grown {
-        for image in ground.images(arrangement.objects[i as usize].at, margin) {
-            grid.insert(image, i);
-        }
+        ground.each_image(arrangement.objects[i as usize].at, margin, |image| points.push((image, i)));
     }
-    grid
+    PointTable::new(ground.bounds.inflate(margin, margin), reach, &points)
 }
 
 /// Moves elements apart that came nearer to each other than any of their symbols are in the example,
@@ -69,14 +69,14 @@ pub(super) fn part(arrangement: &mut Arrangement, fixed: &[bool], example: &Anal
     let reach = example.reach.max(example.widest());
     // What stands as it stood with all others need not be looked at again.
     let mut has_moved = vec![true; arrangement.objects.len()];
-    let mut grid = grid(arrangement, ground, reach);
-    // Those to be looked at, in the order in which they grew; and how far things went since the grid
+    let mut table = table(arrangement, ground, reach);
+    // Those to be looked at, in the order in which they grew; and how far things went since the table
     // was made.
     let (mut todo, mut drift): (Vec<u32>, f64) = (arrangement.grown.clone(), 0.0);
     for round in 0..=ROUNDS {
         const STALE: f64 = 0.1;
         if drift > STALE * reach {
-            grid = self::grid(arrangement, ground, reach);
+            table = self::table(arrangement, ground, reach);
             drift = 0.0;
         }
         let mut moves: Vec<(u32, Vec2)> = Vec::new();
@@ -85,16 +85,16 @@ pub(super) fn part(arrangement: &mut Arrangement, fixed: &[bool], example: &Anal
             let own = &arrangement.objects[i as usize];
             let mut by = Vec2::ZERO;
             let mut goes = false;
-            grid.visit(own.at, reach + drift, |entered, j| {
+            for (entered, j) in table.near(own.at, reach + drift) {
                 let is_far = entered.distance_squared(own.at) > (reach + drift).powi(2);
                 if is_far || j == i || !(has_moved[i as usize] || has_moved[j as usize]) {
-                    return true;
+                    continue;
                 }
                 let other = &arrangement.objects[j as usize];
                 let at = ground.near(other.at, own.at);
                 // Another image of it.
                 if at.distance(entered) > 1.01 * drift + 1e-9 * reach {
-                    return true;
+                    continue;
                 }
                 if let Some(pair) = pair(own, other, at - own.at, example) {
                     // Half each, or all of it away from one that stays.
@@ -106,8 +106,7 @@ pub(super) fn part(arrangement: &mut Arrangement, fixed: &[bool], example: &Anal
                     };
                     goes |= pair.is_bad && stays && !gone.contains(&j);
                 }
-                true
-            });
+            }
             if round == ROUNDS && goes {
                 gone.push(i);
             } else if by != Vec2::ZERO && !fixed[i as usize] && round < ROUNDS {
@@ -134,10 +133,8 @@ pub(super) fn part(arrangement: &mut Arrangement, fixed: &[bool], example: &Anal
         drift += farthest;
         let mut is_near = has_moved.clone();
         for &(i, _) in &moves {
-            grid.visit(arrangement.objects[i as usize].at, reach + drift, |_, j| {
-                is_near[j as usize] = true;
-                true
-            });
+            let near = table.near(arrangement.objects[i as usize].at, reach + drift);
+            near.for_each(|(_, j)| is_near[j as usize] = true);
         }
         todo = arrangement.grown.iter().copied().filter(|&i| is_near[i as usize]).collect();
     }
@@ -146,13 +143,13 @@ pub(super) fn part(arrangement: &mut Arrangement, fixed: &[bool], example: &Anal
 /// Pairs of elements that lie deeper in each other than the example's do.
 pub(super) fn collisions(arrangement: &Arrangement, example: &Analysis, ground: &Ground) -> usize {
     let reach = example.widest();
-    let grid = grid(arrangement, ground, reach);
+    let table = table(arrangement, ground, reach);
     let mut found = 0;
     for &i in &arrangement.grown {
         let own = &arrangement.objects[i as usize];
-        grid.visit(own.at, reach, |at, j| {
+        for (at, j) in table.near(own.at, reach) {
             if j >= i || at.distance_squared(own.at) > reach * reach {
-                return true;
+                continue;
             }
             let other = &arrangement.objects[j as usize];
             if let (Some((a, turn)), Some((b, other_turn))) = (own.copy, other.copy) {
@@ -162,8 +159,7 @@ pub(super) fn collisions(arrangement: &Arrangement, example: &Analysis, ground: 
                 let depth = a.extent.depth(turn, (&b.extent, other_turn), at - own.at, enough);
                 found += usize::from(depth.is_some());
             }
-            true
-        });
+        }
     }
     found
 }

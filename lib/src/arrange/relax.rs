@@ -21,6 +21,7 @@ const LEFT: f64 = 1e-4;
 /// A term of the sum: from, to, and how far the two are from where they should be.
 pub(super) type Term = (u32, u32, Vec2);
 
+/// All terms in which something may move; of two neighbours each has one of the other.
 fn terms(objects: &[Object], ground: &Ground, fixed: &[bool]) -> Vec<Term> {
     let mut terms = Vec::with_capacity(6 * objects.len());
     for (i, object) in objects.iter().enumerate().filter(|(_, object)| !object.is_gone) {
@@ -65,7 +66,8 @@ pub(super) fn relax(objects: &mut [Object], ground: &Ground, fixed: &[bool], (st
     }
 }
 
-/// Moves that make the sum of all terms least, as far as `steps` go; `near` is near enough.
+/// Moves that make the sum of all terms least, as far as `steps` go; `near` is near enough. To every term
+/// there is one the other way round.
 pub(super) fn solved(terms: &[Term], fixed: &[bool], (steps, near): (usize, f64)) -> Vec<Vec2> {
     // Only what may move is part of the system.
     const FIXED: u32 = u32::MAX;
@@ -76,7 +78,7 @@ pub(super) fn solved(terms: &[Term], fixed: &[bool], (steps, near): (usize, f64)
     let mut degree = vec![0.0_f64; n];
     let mut force = vec![Vec2::ZERO; n];
     // Both ends free, and one of them.
-    let (mut pairs, mut held) = (Vec::with_capacity(terms.len()), vec![0.0_f64; n]);
+    let (mut pairs, mut held) = (Vec::with_capacity(terms.len() / 2), vec![0.0_f64; n]);
     for &(i, j, error) in terms {
         let (i, j) = (number[i as usize], number[j as usize]);
         for (at, sign) in [(i, -1.0), (j, 1.0)] {
@@ -88,7 +90,9 @@ pub(super) fn solved(terms: &[Term], fixed: &[bool], (steps, near): (usize, f64)
         match (i, j) {
             (FIXED, FIXED) => {}
             (FIXED, at) | (at, FIXED) => held[at as usize] += 1.0,
-            pair => pairs.push(pair),
+            // The one the other way round is like it.
+            (i, j) if i < j => pairs.push((i, j)),
+            _ => {}
         }
     }
     let scaled = |r: &[Vec2]| -> Vec<Vec2> {
@@ -110,7 +114,7 @@ pub(super) fn solved(terms: &[Term], fixed: &[bool], (steps, near): (usize, f64)
         }
         for &(i, j) in &pairs {
             let (i, j) = (i as usize, j as usize);
-            let apart = p[j] - p[i];
+            let apart = 2.0 * (p[j] - p[i]);
             product[j] += apart;
             product[i] -= apart;
         }
