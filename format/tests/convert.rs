@@ -148,6 +148,14 @@ fn the_artwork_alone_has_no_marks() {
         twice.artwork_only().unwrap().text(),
         "<svg xmlns='http://www.w3.org/2000/svg'><path d='M0,0'/></svg>"
     );
+    // A value that looks like a declaration is none.
+    let like = open(
+        "<svg xmlns='http://www.w3.org/2000/svg' id = 'xmlns:p' xmlns:rinceau='urn:rinceau:1' class='xmlns:a=\"urn:rinceau:1\"'><path d='M0,0'/></svg>",
+    );
+    assert_eq!(
+        like.artwork_only().unwrap().text(),
+        "<svg xmlns='http://www.w3.org/2000/svg' id = 'xmlns:p' class='xmlns:a=\"urn:rinceau:1\"'><path d='M0,0'/></svg>"
+    );
     let plain = open("<svg xmlns='http://www.w3.org/2000/svg'><!-- rinceau --><path d='M0,0'/></svg>");
     assert_eq!(plain.artwork_only().unwrap().text(), plain.text());
 }

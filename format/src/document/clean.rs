@@ -272,18 +272,19 @@ fn referred_to(root: Node, removed: &HashSet<usize>) -> HashSet<usize> {
 /// Where a tag declares our namespace, under whatever prefixes.
 fn declarations(tag: &str) -> Vec<Range<usize>> {
     let mut found = Vec::new();
-    let mut from = 0;
-    while let Some(at) = tag[from..].find("xmlns:") {
-        let start = from + at;
-        from = start + 6;
-        let Some(equals) = tag[from..].find('=') else { break };
-        let value = tag[from + equals + 1..].trim_start();
-        let Some(quote) = value.chars().next().filter(|quote| matches!(quote, '"' | '\'')) else { continue };
-        let Some(end) = value[1..].find(quote) else { break };
-        if &value[1..=end] == NAMESPACE {
-            let open = tag.len() - value.len();
-            found.push(start..open + end + 2);
+    // Attribute by attribute, since a value may hold whatever a name does.
+    let mut at = tag.find(char::is_whitespace).unwrap_or(tag.len());
+    loop {
+        at = tag.len() - tag[at..].trim_start().len();
+        let Some(equals) = tag[at..].find('=') else { break };
+        let value = tag[at + equals + 1..].trim_start();
+        let open = tag.len() - value.len();
+        let Some(quote) = value.chars().next().filter(|quote| matches!(quote, '"' | '\'')) else { break };
+        let Some(length) = value[1..].find(quote) else { break };
+        if tag[at..].starts_with("xmlns:") && &value[1..=length] == NAMESPACE {
+            found.push(at..open + length + 2);
         }
+        at = open + length + 2;
     }
     found
 }

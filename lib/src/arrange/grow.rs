@@ -647,8 +647,12 @@ impl<'a> Arrangement<'a> {
         let reach = 0.5 * p.distance(q) + 0.5 * longest;
         let is_end = |i: u32| i == ends.0 || i == ends.1;
         let mut found = false;
-        self.grid.visit(p.midpoint(q), reach, |at, other| {
-            if is_end(other) || self.objects[other as usize].is_gone {
+        let middle = p.midpoint(q);
+        self.grid.visit(middle, reach, |at, other| {
+            if at.distance_squared(middle) > reach * reach
+                || is_end(other)
+                || self.objects[other as usize].is_gone
+            {
                 return true;
             }
             let edges = self.objects[other as usize].edges.iter();

@@ -60,7 +60,7 @@ fn table(arrangement: &Arrangement, ground: &Ground, reach: f64) -> PointTable {
     for &i in &arrangement.grown {
         ground.each_image(arrangement.objects[i as usize].at, margin, |image| points.push((image, i)));
     }
-    PointTable::new(ground.bounds.inflate(margin, margin), reach, &points)
+    PointTable::new(ground.bounds.inflate(margin, margin), 0.5 * reach, &points)
 }
 
 /// Moves elements apart that came nearer to each other than any of their symbols are in the example,
