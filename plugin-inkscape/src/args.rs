@@ -120,6 +120,10 @@ fn installing(command: Command) -> Command {
                     .help("The shell"),
             ),
         )
+        .subcommand(
+            Command::new("diagnostics")
+                .about("Print versions, folders, the last run in Inkscape and the last error"),
+        )
         .subcommand(Command::new("manual").about("Print the manual page, for man"))
 }
 

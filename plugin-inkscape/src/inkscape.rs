@@ -5,7 +5,7 @@
 use crate::check::Check;
 use crate::run::{self, Job};
 use crate::unbroken;
-use crate::{convert, output, progress, update};
+use crate::{convert, diagnostics, output, progress, update};
 use rinceau::params::Kind;
 use rinceau::{Error, GENERATORS, Values};
 use rinceau_format::{Document, Role, printable};
@@ -26,7 +26,7 @@ pub fn called_by_inkscape(arguments: &[OsString]) -> bool {
 /// Runs the tool Inkscape asks for.
 pub fn run(arguments: &[OsString]) -> ExitCode {
     let call = Call::parse(arguments);
-    let file = call.file.clone();
+    let (file, tool) = (call.file.clone(), call.tool.clone());
     let is_file_format = call.file_format().is_some();
     let result = output::read(file.as_deref())
         .and_then(|input| unbroken(|| call.result(input)))
@@ -34,6 +34,7 @@ pub fn run(arguments: &[OsString]) -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
+            diagnostics::failed(&tool, &error);
             // The drawing goes back unchanged, whatever happened. It comes from the file again:
             // what was read of a drawing beyond the limit ends there.
             if !is_file_format {
@@ -126,6 +127,10 @@ impl Call {
             eprintln!("{}", Check::new(&Document::from_bytes(input.clone())?)?.text(None));
             return Ok(input);
         }
+        if self.tool == "diagnostics" {
+            eprintln!("{}", diagnostics::text());
+            return Ok(input);
+        }
         let generator = GENERATORS.iter().find(|generator| generator.name == self.tool).ok_or_else(|| {
             Error::new(
                 "unknown-tool",
@@ -173,7 +178,10 @@ impl Call {
             bytes: input,
             progress: &mut progress,
         })?;
-        done.to_bytes()
+        progress.start("write");
+        let bytes = done.to_bytes()?;
+        diagnostics::ran(generator.name, progress.stages());
+        Ok(bytes)
     }
 
     fn take(&mut self, name: &str) -> Option<String> {

@@ -1,9 +1,12 @@
 //! `rinceau install` and `uninstall`: the binary and its descriptions in Inkscape's user folder.
 
-use crate::{inx, output};
+use crate::{diagnostics, inx, output};
 use rinceau_format::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+/// The program in our folder.
+const PROGRAM: &str = if cfg!(windows) { "bin/rinceau.exe" } else { "bin/rinceau" };
 
 /// Copies this binary and writes its descriptions into `<extensions>/rinceau`.
 ///
@@ -18,7 +21,7 @@ pub fn install(dir: Option<&Path>) -> Result<(), Error> {
         )
     };
     fs::create_dir_all(folder.join("bin")).map_err(|error| cannot("bin", &error))?;
-    let program = if cfg!(windows) { "bin/rinceau.exe" } else { "bin/rinceau" };
+    let program = PROGRAM;
     let own = std::env::current_exe().and_then(fs::read).map_err(|error| cannot(program, &error))?;
     output::write(Some(&folder.join(program)), &own)?;
     make_executable(&folder.join(program)).map_err(|error| cannot(program, &error))?;
@@ -56,11 +59,12 @@ pub fn uninstall(dir: Option<&Path>) -> Result<(), Error> {
         )
     };
     let ours = ["bin/rinceau", "bin/rinceau.exe", inx::PATTERNS.0].map(|name| folder.join(name));
+    let memory = folder.join("bin").join(diagnostics::FILE);
     let entries = fs::read_dir(&folder).map_err(|error| cannot(&folder, &error))?;
     let descriptions = entries.flatten().map(|entry| entry.path());
     let descriptions =
         descriptions.filter(|path| path.extension().is_some_and(|extension| extension == "inx"));
-    for path in descriptions.chain(ours).filter(|path| path.is_file()) {
+    for path in descriptions.chain(ours).chain([memory]).filter(|path| path.is_file()) {
         fs::remove_file(&path).map_err(|error| cannot(&path, &error))?;
     }
     // Whatever else somebody has put there stays.
@@ -70,8 +74,13 @@ pub fn uninstall(dir: Option<&Path>) -> Result<(), Error> {
     Ok(())
 }
 
+/// The program that is installed in a folder.
+pub fn program(folder: &Path) -> PathBuf {
+    folder.join(PROGRAM)
+}
+
 /// The folder of this extension.
-fn folder(dir: Option<&Path>) -> Result<PathBuf, Error> {
+pub fn folder(dir: Option<&Path>) -> Result<PathBuf, Error> {
     let extensions = match dir {
         Some(dir) => dir.to_owned(),
         None => user_extensions().ok_or_else(|| {

@@ -89,6 +89,16 @@ pub fn all(binary: &str) -> Vec<(String, String)> {
             binary,
         ),
     ));
+    files.push((
+        "diagnostics.inx".to_owned(),
+        command(
+            "diagnostics",
+            "Diagnostics",
+            "Versions, folders, how long the last run took, and the last error: for a report",
+            &[MENU],
+            binary,
+        ),
+    ));
     for (format, title, mime) in FILES {
         files.push((format!("open-{format}.inx"), file_format("open", format, title, mime, binary)));
         files.push((format!("save-{format}.inx"), file_format("save", format, title, mime, binary)));

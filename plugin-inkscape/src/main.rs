@@ -3,6 +3,7 @@
 mod args;
 mod check;
 mod convert;
+mod diagnostics;
 mod inkscape;
 mod install;
 mod inx;

@@ -1,6 +1,6 @@
 //! The whole flow on one screen: text, document, scene, generate, artwork, layer, text.
 
-use crate::{args, check, convert, install, output, progress, render, update};
+use crate::{args, check, convert, diagnostics, install, output, progress, render, update};
 use clap::ArgMatches;
 use rinceau::params::Kind;
 use rinceau::tack::Tacked;
@@ -177,6 +177,7 @@ pub fn command(matches: &ArgMatches) -> Result<(), Error> {
             let _ = clap_mangen::Man::new(args::command()).render(&mut text);
             output::write(None, &text)
         }
+        "diagnostics" => output::write(None, diagnostics::text().as_bytes()),
         "install" => install::install(matches.get_one::<PathBuf>("dir").map(PathBuf::as_path)),
         name => match GENERATORS.iter().find(|generator| generator.name == name) {
             Some(generator) => generator_command(generator, matches),

@@ -419,6 +419,42 @@ fn what_is_installed_is_taken_out_again() {
 }
 
 #[test]
+fn diagnostics_tell_of_the_last_run_and_the_last_error() {
+    let folder = folder();
+    rinceau(["install", "--dir"]).arg(folder.path()).succeed();
+    let program = folder.path().join("rinceau/bin/rinceau");
+    let drawing =
+        file(&folder, "in.svg", &svg("<circle id='disc' class='rinceau-container' cx='99' cy='99' r='90'/>"));
+    let call = |arguments: &[&str]| {
+        let mut command = Command::new(&program);
+        command.args(arguments).arg(&drawing);
+        Run::of(command).done()
+    };
+    let told = || call(&["--tool=diagnostics"]).stderr;
+    let before = told();
+    for line in ["Rinceau:           0.", "System:", "Last run:          none", "Last error:        none"] {
+        assert!(before.contains(line), "{before}\nlacks {line}");
+    }
+    assert_eq!(call(&["--tool=pack"]).code, Some(0));
+    assert_eq!(call(&["--tool=mark-guide"]).code, Some(1));
+    let after = told();
+    for line in [
+        "Last run:          pack, just now, ",
+        "write ",
+        "Last error:        mark-guide, just now: Nothing is selected",
+    ] {
+        assert!(after.contains(line), "{after}\nlacks {line}");
+    }
+    // What is remembered may be broken by whatever else writes there.
+    std::fs::write(folder.path().join("rinceau/bin/last-run.json"), "{").unwrap();
+    assert!(told().contains("Last run:          none"));
+    rinceau(["uninstall", "--dir"]).arg(folder.path()).succeed();
+    assert!(!folder.path().join("rinceau").exists());
+    // From a shell, of a program that is not installed.
+    assert!(rinceau(["diagnostics"]).succeed().text().contains("Program:"));
+}
+
+#[test]
 fn shells_and_man_are_served() {
     for (shell, mark) in
         [("bash", "complete -F"), ("zsh", "#compdef rinceau"), ("fish", "complete -c rinceau")]

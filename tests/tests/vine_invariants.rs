@@ -149,9 +149,10 @@ fn matched(lines: &[Piece], outlines: &[Piece]) -> Vec<usize> {
     let boxes: Vec<Rect> = outlines.iter().map(|outline| bounds(outline)).collect();
     let mut places: Vec<usize> = Vec::new();
     for (i, line) in lines.iter().enumerate() {
-        // Not the ends, which may be cut askew or thinner than chords are exact.
+        // Not the ends, which may be cut askew, nor the half towards the tip, which may be thinner than
+        // chords are exact.
         let points = line.iter().max_by(|a, b| length(a).total_cmp(&length(b))).expect("a centre line");
-        let samples: Vec<Point> = (3..7).map(|k| points[(points.len() - 1) * k / 10]).collect();
+        let samples: Vec<Point> = [0.15, 0.25, 0.35, 0.45].map(|share| part_way(points, share)).to_vec();
         // Of several, as where a twig starts within its parent, the narrowest.
         let fits = |&j: &usize| {
             !places.contains(&j) && samples.iter().all(|&p| boxes[j].contains(p) && covers(&outlines[j], p))
@@ -171,6 +172,19 @@ fn moved(piece: &[Vec<Point>], by: Vec2) -> Piece {
 
 fn length(line: &[Point]) -> f64 {
     line.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
+}
+
+/// The place at a share of the length of a line.
+fn part_way(line: &[Point], share: f64) -> Point {
+    let mut left = share * length(line);
+    for pair in line.windows(2) {
+        let step = pair[0].distance(pair[1]);
+        if step > 0.0 && left <= step {
+            return pair[0].lerp(pair[1], left / step);
+        }
+        left -= step;
+    }
+    line[line.len() - 1]
 }
 
 /// Distance of a place from a centre line, and the arc length of what is nearest; gaps count
