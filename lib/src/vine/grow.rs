@@ -342,21 +342,36 @@ impl<'a> Plant<'a> {
         if self.period.is_some_and(|period| branch.span() + self.sizes.gap >= period) {
             return false;
         }
-        let Some((parent, s)) = branch.parent else { return true };
-        let parent = &self.stems[parent];
+        let Some((index, s)) = branch.parent else { return true };
+        let parent = &self.stems[index];
         let near: Vec<&Node> = parent.nodes.iter().filter(|node| (node.s - s).abs() < length).collect();
         let at = branch.at(SHARE * length).p;
         if near.iter().any(|node| node.p.distance(at) < APART * length) {
             return false;
         }
         // Nor comes back to it, once it has left.
-        let clear = 0.5 * (parent.width(s) + branch.taper.start) + self.sizes.gap;
-        let mut has_left = false;
-        branch.nodes.iter().take_while(|node| node.s < 1.2 * SHARE * length).all(|node| {
-            let is_clear = near.windows(2).all(|pair| point_segment(node.p, pair[0].p, pair[1].p) > clear);
-            has_left |= is_clear;
-            is_clear || !has_left
-        })
+        let half = 0.5 * parent.width(s);
+        let (clear, out) = (half + 0.5 * branch.taper.start + self.sizes.gap, half + 2.0 * self.cells.size());
+        let (mut is_out_from, mut has_left) = (None, false);
+        for (i, node) in branch.nodes.iter().enumerate().take_while(|(_, node)| node.s < 1.2 * SHARE * length)
+        {
+            let to_parent = near.windows(2).map(|pair| point_segment(node.p, pair[0].p, pair[1].p));
+            let apart = to_parent.fold(f64::INFINITY, f64::min);
+            if has_left && apart <= clear {
+                return false;
+            }
+            has_left |= apart > clear;
+            is_out_from = is_out_from.or((apart > out).then_some(i));
+        }
+        // Nor lies in its stroke again, where forks are allowed to: what starts as a tight curl would leave
+        // on the other side.
+        let forks = branch.nodes.partition_point(|node| node.s < self.fork_reach(parent.width(s), length));
+        let is_in_parent = |node: &Node| {
+            let owner = self.cells.owner(node.p);
+            owner.is_body() && owner.stem() == Some(index)
+        };
+        let way = &branch.nodes[is_out_from.unwrap_or(forks).min(forks)..forks];
+        !way.iter().any(is_in_parent)
     }
 
     /// How a stem of this width gets thinner.
@@ -405,8 +420,13 @@ impl<'a> Plant<'a> {
 
     /// Where a branch of some length leaves its parent.
     fn fork(&self, site: &Site, length: f64) -> Fork {
-        let near = 5.0 * (self.stems[site.parent].width(site.s) + self.sizes.gap);
-        Fork { stem: site.parent, s: site.s, reach: near.max(0.3 * length) }
+        let width = self.stems[site.parent].width(site.s);
+        Fork { stem: site.parent, s: site.s, reach: self.fork_reach(width, length) }
+    }
+
+    /// How far from its fork a branch of some length may touch its parent, which is so wide there.
+    fn fork_reach(&self, width: f64, length: f64) -> f64 {
+        (5.0 * (width + self.sizes.gap)).max(0.3 * length)
     }
 
     /// A look at a few places on the centre line, from the far side: most of what does not fit
