@@ -8,7 +8,7 @@ use crate::scene::{Form, FormItem, Guide, Scene, Seed, Source, When};
 use crate::style::{FillRule, Style};
 use crate::vocabulary::{NAMESPACE, Role};
 use kurbo::{Affine, BezPath};
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fmt::Write;
 
 /// The text of a drawing that reads as this scene, number for number. Marked objects look as
@@ -54,6 +54,8 @@ struct Drawing {
     ids: HashSet<String>,
     /// Ids of the scene's objects, where others are made up.
     taken: HashSet<String>,
+    /// The last number that was made up for each.
+    numbers: HashMap<String, usize>,
 }
 
 impl Drawing {
@@ -307,13 +309,14 @@ impl Drawing {
     }
 
     fn free_id(&mut self, of: &str) -> String {
-        let mut number = 1;
+        let of = of.replace([' ', '\t', '\n', '\r'], "_");
+        let number = self.numbers.entry(of.clone()).or_insert(0);
         loop {
-            let id = format!("{}-{number}", of.replace([' ', '\t', '\n', '\r'], "_"));
+            *number += 1;
+            let id = format!("{of}-{number}");
             if !self.taken.contains(&id) && self.ids.insert(id.clone()) {
                 return id;
             }
-            number += 1;
         }
     }
 }
