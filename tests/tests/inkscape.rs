@@ -424,7 +424,7 @@ fn diagnostics_tell_of_the_last_run_and_the_last_error() {
     rinceau(["install", "--dir"]).arg(folder.path()).succeed();
     let program = folder.path().join("rinceau/bin/rinceau");
     let drawing =
-        file(&folder, "in.svg", &svg("<circle id='disc' class='rinceau-container' cx='99' cy='99' r='90'/>"));
+        file(&folder, "in.svg", svg("<circle id='disc' class='rinceau-container' cx='99' cy='99' r='90'/>"));
     let call = |arguments: &[&str]| {
         let mut command = Command::new(&program);
         command.args(arguments).arg(&drawing);
