@@ -21,17 +21,16 @@ pub fn install(dir: Option<&Path>) -> Result<(), Error> {
         )
     };
     fs::create_dir_all(folder.join("bin")).map_err(|error| cannot("bin", &error))?;
-    let program = PROGRAM;
-    let own = std::env::current_exe().and_then(fs::read).map_err(|error| cannot(program, &error))?;
-    output::write(Some(&folder.join(program)), &own)?;
-    make_executable(&folder.join(program)).map_err(|error| cannot(program, &error))?;
+    let own = std::env::current_exe().and_then(fs::read).map_err(|error| cannot(PROGRAM, &error))?;
+    output::write(Some(&program(&folder)), &own)?;
+    make_executable(&program(&folder)).map_err(|error| cannot(PROGRAM, &error))?;
     // Descriptions of an older version, whose tools may be gone.
     for entry in fs::read_dir(&folder).map_err(|error| cannot("", &error))?.flatten() {
         if entry.path().extension().is_some_and(|extension| extension == "inx") {
             fs::remove_file(entry.path()).map_err(|error| cannot("", &error))?;
         }
     }
-    for (name, content) in inx::all(program) {
+    for (name, content) in inx::all(PROGRAM) {
         output::write(Some(&folder.join(name)), content.as_bytes())?;
     }
     output::write(Some(&folder.join(inx::PATTERNS.0)), inx::PATTERNS.1)?;
