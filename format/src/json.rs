@@ -14,7 +14,7 @@ use kurbo::{Affine, BezPath, PathEl, Point, Rect};
 use schemars::JsonSchema;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write;
 
 /// The version of the JSON form.
@@ -79,7 +79,7 @@ impl Scene {
         for (symbol, source) in symbols.chain(examples.map(|one| (&mut one.symbol, &one.source))) {
             *symbol = Some(symbol.trim()).filter(|name| !name.is_empty()).unwrap_or(&source.id).to_owned();
         }
-        if let Some(what) = hollow(&mut scene).or_else(|| fault(&scene, &limits)) {
+        if let Some(what) = fault(&scene, &limits).or_else(|| hollow(&mut scene)) {
             return wrong(what);
         }
         set_roots(&mut scene.forms);
@@ -119,21 +119,27 @@ pub(crate) fn each_source(scene: &mut Scene, mut visit: impl FnMut(&mut Source))
     }
 }
 
-/// An object without a name or with nothing in it, in words.
+/// An object without a name of its own, or with nothing in it where no drawing has that, in words.
 fn hollow(scene: &mut Scene) -> Option<String> {
     let mut is_named = true;
-    each_source(scene, |source| is_named &= !source.id.trim().is_empty());
+    let (mut ids, mut twice) = (HashSet::new(), None);
+    each_source(scene, |source| {
+        is_named &= !source.id.trim().is_empty();
+        if !ids.insert(source.id.clone()) && twice.is_none() {
+            twice = Some(source.id.clone());
+        }
+    });
     if !is_named {
         return Some("An object of it has no id".to_owned());
     }
+    if let Some(id) = twice {
+        return Some(format!("Two objects of it have the id '{id}'"));
+    }
     let containers = scene.containers.iter().map(|one| (&one.source, one.outlines.is_empty()));
-    let fixed = scene.fixed.iter().map(|one| (&one.source, one.parts.is_empty()));
     let elements = scene.elements.iter().map(|one| (&one.source, one.template.parts.is_empty()));
-    let forms = scene.forms.iter().map(|one| (&one.source, one.items.is_empty()));
-    let references = scene.references.iter().map(|one| (&one.source, one.examples.is_empty()));
     let examples = scene.references.iter().flat_map(|one| &one.examples);
     let examples = examples.map(|one| (&one.source, one.parts.is_empty()));
-    let mut all = containers.chain(fixed).chain(elements).chain(forms).chain(references).chain(examples);
+    let mut all = containers.chain(elements).chain(examples);
     let (source, _) = all.find(|(_, is_empty)| *is_empty)?;
     Some(format!("'{}' has nothing in it", source.id))
 }

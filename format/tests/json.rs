@@ -209,6 +209,24 @@ proptest! {
     }
 }
 
+/// Objects with the same id, and marked groups that hold nothing, are one scene in both forms.
+#[test]
+fn a_broken_drawing_comes_back_too() {
+    let drawing = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 100 50'>\
+                   <path id='a' class='rinceau-container' d='M0,0h5v5z'/>\
+                   <path id='a' class='rinceau-guide' d='M0,0h5'/>\
+                   <path class='rinceau-guide' d='M1,0h5'/>\
+                   <g class='rinceau-fixed'/><g class='rinceau-form'/><g class='rinceau-reference'/></svg>";
+    let document = Document::from_bytes(drawing.into()).unwrap();
+    let scene = document.scene(&Selection::default()).unwrap();
+    let id = |guide: &Guide| guide.source.id.clone();
+    assert_eq!(scene.guides.iter().map(id).collect::<Vec<_>>(), ["node:2", "node:3"]);
+    let from_json = Scene::from_json(&scene.to_json()).unwrap();
+    assert_eq!(from_json.to_json(), scene.to_json());
+    let back = Document::from_scene(&from_json).unwrap().scene(&Selection::default()).unwrap();
+    assert_eq!(back.to_json(), scene.to_json());
+}
+
 #[test]
 fn an_object_without_a_symbol_is_one_of_itself() {
     let parts = "\"parts\":[{\"path\":\"M0,0L1,1\",\"style\":{}}]";
@@ -270,14 +288,16 @@ fn what_is_no_scene_is_said_with_its_place() {
             "'font' is no property of paint",
         ),
         (scene(",\"seeds\":[{\"source\":{\"id\":\" \"},\"at\":[1,2]}]"), "has no id"),
-        (scene(&format!(",\"fixed\":[{{{source},\"parts\":[]}}]")), "'a' has nothing in it"),
-        (scene(&format!(",\"forms\":[{{{source},\"items\":[]}}]")), "'a' has nothing in it"),
-        (scene(&format!(",\"references\":[{{{source},\"examples\":[]}}]")), "'a' has nothing in it"),
+        (scene(&format!(",\"containers\":[{{{source},\"outlines\":[]}}]")), "'a' has nothing in it"),
+        (
+            scene(&format!(",\"fixed\":[{{{source},\"parts\":[]}},{{{source},\"parts\":[]}}]")),
+            "Two objects of it have the id 'a'",
+        ),
         (
             scene(&format!(
-                ",\"references\":[{{{source},\"examples\":[{{{source},\"symbol\":\"s\",\"parts\":[]}}]}}]"
+                ",\"references\":[{{{source},\"examples\":[{{\"source\":{{\"id\":\"b\"}},\"symbol\":\"s\",\"parts\":[]}}]}}]"
             )),
-            "'a' has nothing in it",
+            "'b' has nothing in it",
         ),
         (
             scene(&format!(

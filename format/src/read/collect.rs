@@ -15,7 +15,7 @@ use crate::units::mean_scale;
 use crate::vocabulary::{INKSCAPE, NAMESPACE, Role};
 use kurbo::{Affine, BezPath, ParamCurve, PathEl, Point, Rect, Shape};
 use roxmltree::{Node, NodeId};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// What stands open: an annotated object, or a selected one without a role.
 #[derive(Clone)]
@@ -64,12 +64,15 @@ pub(super) struct Gathering<'r, 'a, 'i> {
     /// For each container of the scene, whether it was selected.
     selected_containers: Vec<bool>,
     forms: Vec<RawForm>,
+    /// Whose each id of the scene is.
+    named: HashMap<String, NodeId>,
 }
 
 impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
     pub fn new(resolver: &'r Resolver<'a, 'i>) -> Self {
         let scene = Scene { view: resolver.view, px_per_unit: resolver.px_per_unit, ..Scene::default() };
-        Gathering { resolver, open: Vec::new(), scene, selected_containers: Vec::new(), forms: Vec::new() }
+        let (open, selected_containers, forms) = (Vec::new(), Vec::new(), Vec::new());
+        Gathering { resolver, open, scene, selected_containers, forms, named: HashMap::new() }
     }
 
     /// True outside annotated objects.
@@ -150,8 +153,21 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
         Ok(self.scene)
     }
 
-    fn source(&self, node: Node) -> Source {
-        let id = self.resolver.reference(node);
+    /// What a node is called. An id that stands twice names the first alone; the others go by their place.
+    fn source(&mut self, node: Node) -> Source {
+        let mut id = self.resolver.reference(node);
+        if *self.named.entry(id.clone()).or_insert(node.id()) != node.id() {
+            let mut place = self.resolver.place(node);
+            while *self.named.entry(place.clone()).or_insert(node.id()) != node.id() {
+                place.push('+');
+            }
+            let at = self.resolver.position(node);
+            self.warn(format!(
+                "{at}: another object has the id '{id}' too; this one is called '{place}'. Give it an id of \
+                 its own (Object > Object Properties)."
+            ));
+            id = place;
+        }
         let label = node
             .attribute((INKSCAPE, "label"))
             .map_or_else(|| id.trim_start_matches("node:").to_owned(), str::to_owned);
@@ -172,9 +188,10 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
             return Ok(false);
         }
         self.check_nesting(node, role)?;
+        let source = self.source(node);
         self.open.push(Collector {
             role,
-            source: self.source(node),
+            source,
             node: node.id(),
             is_group: node.tag_name().name() == "g",
             selected: situation.selected,

@@ -107,6 +107,11 @@ impl<'a, 'i> Resolver<'a, 'i> {
         if let Some(id) = node.plain("id").filter(|id| !id.is_empty()) {
             return id.to_owned();
         }
+        self.place(node)
+    }
+
+    /// `node:` and a node's place from the root down.
+    pub fn place(&self, node: Node) -> String {
         let places = self.places.get_or_init(|| places(self.xml));
         let mut path: Vec<String> = node
             .ancestors()
