@@ -6,7 +6,7 @@ use crate::scene::{FormItem, Scene, When};
 use crate::style::{FillRule, rgb};
 use crate::units::mean_scale;
 use kurbo::{Affine, BezPath, PathEl, Point};
-use std::fmt::Write;
+use std::fmt::{self, Write};
 
 impl Scene {
     /// The forms of a scene as a grammar of Context Free, and what it cannot say, in words. Copies go on
@@ -48,9 +48,11 @@ impl Scene {
                             ));
                         }
                         let map = to_grammar * clone.transform * to_grammar.inverse();
-                        let numbers: Vec<String> = corners(map).iter().map(|n| number_text(*n)).collect();
-                        let _ =
-                            writeln!(shapes, "  {} [ transform {} ]", names[clone.form], numbers.join(" "));
+                        let _ = write!(shapes, "  {} [ transform", names[clone.form]);
+                        for number in corners(map) {
+                            let _ = write!(shapes, " {}", Rounded(number));
+                        }
+                        shapes.push_str(" ]\n");
                     }
                 }
             }
@@ -73,10 +75,15 @@ fn name(index: usize, id: &str) -> String {
     format!("f{}_{plain}", index + 1)
 }
 
-fn number_text(number: f64) -> String {
-    // Nothing is as small as the rounding that comes from moving points about.
-    let rounded = (number * 1e12).round() / 1e12;
-    if rounded == 0.0 { "0".to_owned() } else { rounded.to_string() }
+/// A number as a grammar has it. Nothing is as small as the rounding that comes from moving points about.
+struct Rounded(f64);
+
+impl fmt::Display for Rounded {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let rounded = (self.0 * 1e12).round() / 1e12;
+        // Zero has no sign.
+        write!(f, "{}", rounded + 0.0)
+    }
 }
 
 /// A path with its paint; false if it has none.
@@ -116,7 +123,7 @@ fn put_path(out: &mut String, name: &str, part: &Part, to_grammar: Affine, notes
             _ => "CF::MiterJoin",
         };
         let colour = adjustment(colour, opacity("stroke-opacity"));
-        let _ = writeln!(out, "  STROKE({}, {cap} + {join}) [ {colour} ]", number_text(width));
+        let _ = writeln!(out, "  STROKE({}, {cap} + {join}) [ {colour} ]", Rounded(width));
     }
     out.push_str("}\n");
     true
@@ -124,7 +131,7 @@ fn put_path(out: &mut String, name: &str, part: &Part, to_grammar: Affine, notes
 
 fn put_commands(out: &mut String, path: &BezPath) {
     let mut at = Point::ORIGIN;
-    let n = number_text;
+    let n = Rounded;
     for el in path.elements() {
         let _ = match *el {
             PathEl::MoveTo(p) => writeln!(out, "  MOVETO({}, {})", n(p.x), n(p.y)),
@@ -145,14 +152,14 @@ fn put_commands(out: &mut String, path: &BezPath) {
 }
 
 fn put_curve(out: &mut String, a: Point, b: Point, p: Point) {
-    let numbers: Vec<String> = [p, a, b].iter().flat_map(|p| [number_text(p.x), number_text(p.y)]).collect();
-    let _ = writeln!(out, "  CURVETO({})", numbers.join(", "));
+    let [px, py, ax, ay, bx, by] = [p.x, p.y, a.x, a.y, b.x, b.y].map(Rounded);
+    let _ = writeln!(out, "  CURVETO({px}, {py}, {ax}, {ay}, {bx}, {by})");
 }
 
 /// From the black that a grammar starts with.
 fn adjustment(colour: &str, opacity: f64) -> String {
     let [r, g, b] = rgb(colour).unwrap_or_default().map(|part| f64::from(part) / 255.0);
     let [hue, saturation, brightness] = hsv([r, g, b]).map(|part| (part * 1e6).round() / 1e6);
-    let alpha = if opacity < 1.0 { format!(" a {}", number_text(opacity - 1.0)) } else { String::new() };
+    let alpha = if opacity < 1.0 { format!(" a {}", Rounded(opacity - 1.0)) } else { String::new() };
     format!("hue {hue} sat {saturation} b {brightness}{alpha}")
 }

@@ -2,7 +2,7 @@
 
 use super::example::Analysis;
 use super::ground::Ground;
-use super::grow::Arrangement;
+use super::grow::{Arrangement, Link};
 use super::params::Params;
 use super::relax;
 use crate::geom::boolean;
@@ -75,6 +75,14 @@ impl Outline {
     }
 }
 
+/// An element that is to be drawn: by what it lies over others, and of which it is a copy.
+struct Placed {
+    order: f64,
+    copy: usize,
+    pose: Affine,
+    tone: f64,
+}
+
 /// Sublayers of one run, filled shape by shape.
 pub(super) struct Drawing {
     elements: Group,
@@ -118,7 +126,7 @@ impl Drawing {
     /// Errors: clones are to vary in tone.
     pub fn add(
         &mut self,
-        arrangement: &Arrangement,
+        arrangement: Arrangement,
         (example, reference, ground): (&Analysis, &Reference, &Ground),
         outline: Option<&Outline>,
         (params, rng): (&Params, &mut Rng),
@@ -131,11 +139,9 @@ impl Drawing {
                 "Choose copies as result, or let tones be",
             ));
         }
-        let drawn: Vec<&Example> =
-            example.elements.iter().map(|element| &reference.examples[element.index]).collect();
         let mut symbols: BTreeMap<usize, usize> = BTreeMap::new();
-        let mut placed: Vec<(f64, Item)> = Vec::new();
-        let order = order(arrangement, example, ground, params);
+        let mut placed: Vec<Placed> = Vec::with_capacity(arrangement.grown.len());
+        let order = order(&arrangement, example, ground, params);
         for (number, &index) in arrangement.grown.iter().enumerate() {
             let object = &arrangement.objects[index as usize];
             let Some((copy, turn)) = object.copy else { continue };
@@ -146,7 +152,6 @@ impl Drawing {
             let element = &example.elements[copy];
             let points = || element.extent.points.iter().map(|v| varied * v.to_point()).map(Point::to_vec2);
             let radius = points().map(|v| v.hypot()).fold(0.0, f64::max);
-            let of = drawn[copy].source.id.clone();
             let mut images = Vec::new();
             ground.each_image(object.at, radius, |at| images.push(at));
             for at in images {
@@ -158,25 +163,30 @@ impl Drawing {
                 }
                 let pose =
                     Affine::translate(at.to_vec2()) * varied * Affine::translate(-element.at.to_vec2());
-                let item = if has_clones {
-                    let symbol = *symbols.entry(copy).or_insert_with(|| {
-                        let name = format!("{of}{}", self.symbols.len() + 1);
-                        self.symbols.push(Symbol::new(name, drawn[copy].parts.clone()));
+                if has_clones {
+                    symbols.entry(copy).or_insert_with(|| {
+                        let Example { source, parts, .. } = &reference.examples[element.index];
+                        let name = format!("{}{}", source.id, self.symbols.len() + 1);
+                        self.symbols.push(Symbol::new(name, parts.clone()));
                         self.symbols.len() - 1
                     });
-                    Item::cloned(of.clone(), symbol, pose)
-                } else {
-                    Item::new(
-                        of.clone(),
-                        drawn[copy].parts.iter().map(|part| copied(part, pose, tone)).collect(),
-                    )
-                };
-                placed.push((order[number], item));
+                }
+                placed.push(Placed { order: order[number], copy, pose, tone });
             }
         }
-        placed.sort_by(|a, b| a.0.total_cmp(&b.0));
-        self.elements.items.extend(placed.into_iter().map(|(_, item)| item));
-        self.connectivity.add(arrangement, ground, example.mean);
+        placed.sort_by(|a, b| a.order.total_cmp(&b.order));
+        self.connectivity.add(&arrangement, ground, example.mean);
+        // There may be many, and their items take as much room again.
+        drop((arrangement, order));
+        self.elements.items.reserve_exact(placed.len());
+        for Placed { copy, pose, tone, .. } in placed {
+            let Example { source, parts, .. } = &reference.examples[example.elements[copy].index];
+            let of = source.id.clone();
+            self.elements.items.push(match symbols.get(&copy) {
+                Some(&symbol) => Item::cloned(of, symbol, pose),
+                None => Item::new(of, parts.iter().map(|part| copied(part, pose, tone)).collect()),
+            });
+        }
         Ok(())
     }
 }
@@ -218,19 +228,18 @@ fn drawn_along(example: &Analysis) -> Vec2 {
 /// that differ by one from neighbour to neighbour, as nearly as all of them can. So the overlap follows
 /// a flow around any bend.
 fn as_neighbours(arrangement: &Arrangement) -> Vec<f64> {
-    let mut terms: Vec<relax::Term> = Vec::new();
-    for &i in &arrangement.grown {
+    let terms = arrangement.grown.iter().flat_map(|&i| {
         let object = &arrangement.objects[i as usize];
-        let Some((copy, _)) = object.copy else { continue };
-        for link in object.ring.iter().filter(|link| arrangement.objects[link.to as usize].copy.is_some()) {
-            let above = if link.element > copy { 1.0 } else { -1.0 };
-            terms.push((i, link.to, Vec2::new(above, 0.0)));
-            terms.push((link.to, i, Vec2::new(-above, 0.0)));
-        }
-    }
+        let drawn = |link: &&Link| arrangement.objects[link.to as usize].copy.is_some();
+        let links = object.ring.iter().filter(drawn).filter_map(move |link| Some((link, object.copy?.0)));
+        links.flat_map(move |(link, copy)| {
+            let above = if link.element as usize > copy { 1.0 } else { -1.0 };
+            [(i, link.to, Vec2::new(above, 0.0)), (link.to, i, Vec2::new(-above, 0.0))]
+        })
+    });
     let mut fixed: Vec<bool> = vec![false; arrangement.objects.len()];
     arrangement.starts.iter().for_each(|&start| fixed[start as usize] = true);
-    let heights = relax::solved(&terms, &fixed, (relax::STEPS, 1e-3));
+    let heights = relax::solved(terms, &fixed, (relax::STEPS, 1e-3));
     arrangement.grown.iter().map(|&i| heights[i as usize].x).collect()
 }
 

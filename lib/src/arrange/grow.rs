@@ -48,7 +48,7 @@ pub(super) struct Link {
     pub to: u32,
     pub offset: Vec2,
     /// The element that the example has there.
-    pub element: usize,
+    pub element: u32,
 }
 
 /// What the growth goes by.
@@ -316,10 +316,12 @@ impl<'a> Arrangement<'a> {
             let symbol = element.ring[(found.shift + i) % m].symbol;
             members[i] = self.place(seed, offset(i), (&members, i, &offset), symbol);
         }
+        // There are many rings: none has room for more.
+        self.objects[seed as usize].ring.reserve_exact(members.iter().flatten().count());
         for (i, member) in members.iter().enumerate() {
             if let Some(other) = *member {
                 self.connect(seed, other);
-                let of = element.ring[(found.shift + i) % m].element;
+                let of = element.ring[(found.shift + i) % m].element as u32;
                 let link = Link { to: other, offset: offset(i), element: of };
                 self.objects[seed as usize].ring.push(link);
             }
@@ -377,7 +379,7 @@ impl<'a> Arrangement<'a> {
                 .enumerate()
                 .map(|(i, &to)| {
                     let own = &ring[(found.shift + i) % ring.len()];
-                    Link { to, offset: rotated(own.offset, found.turn), element: own.element }
+                    Link { to, offset: rotated(own.offset, found.turn), element: own.element as u32 }
                 })
                 .collect();
             let mended_object = Object { ring: links, ..object.clone() };

@@ -207,7 +207,7 @@ impl One<'_> {
         sum.grown += arrangement.grown.len();
         let likeness = Likeness::new(&arrangement, example, &ground);
         sum.likeness = Some(likeness.worse(sum.likeness.take()));
-        drawing.add(&arrangement, (example, reference, &ground), self.outline, (self.params, rng))
+        drawing.add(arrangement, (example, reference, &ground), self.outline, (self.params, rng))
     }
 
     /// The example stretched a little, so that a whole number of its rows and columns goes into a tile:

@@ -21,25 +21,17 @@ const LEFT: f64 = 1e-4;
 /// A term of the sum: from, to, and how far the two are from where they should be.
 pub(super) type Term = (u32, u32, Vec2);
 
-/// All terms in which something may move; of two neighbours each has one of the other.
-fn terms(objects: &[Object], ground: &Ground, fixed: &[bool]) -> Vec<Term> {
-    let mut terms = Vec::with_capacity(6 * objects.len());
-    for (i, object) in objects.iter().enumerate().filter(|(_, object)| !object.is_gone) {
-        if fixed[i] && object.edges.iter().all(|&j| fixed[j as usize]) {
-            continue;
-        }
-        // Elements that lost or gained an edge, and seeds, keep the shape that they have.
-        let is_whole = object.copy.is_some()
-            && object.ring.len() == object.edges.len()
-            && object.ring.iter().all(|link| object.edges.contains(&link.to));
-        if is_whole {
-            let apart = |link: &Link| ground.near(objects[link.to as usize].at, object.at) - object.at;
-            terms.extend(object.ring.iter().map(|link| (i as u32, link.to, link.offset - apart(link))));
-        } else {
-            terms.extend(object.edges.iter().map(|&j| (i as u32, j, Vec2::ZERO)));
-        }
-    }
-    terms
+/// Terms of one object; of two neighbours each has one of the other.
+fn terms<'a>(objects: &'a [Object], ground: &'a Ground, i: usize) -> impl Iterator<Item = Term> + 'a {
+    let object = &objects[i];
+    // Elements that lost or gained an edge, and seeds, keep the shape that they have.
+    let is_whole = object.copy.is_some()
+        && object.ring.len() == object.edges.len()
+        && object.ring.iter().all(|link| object.edges.contains(&link.to));
+    let (ring, edges): (&[Link], &[u32]) = if is_whole { (&object.ring, &[]) } else { (&[], &object.edges) };
+    let apart = |link: &Link| ground.near(objects[link.to as usize].at, object.at) - object.at;
+    let ring = ring.iter().map(move |link| (i as u32, link.to, link.offset - apart(link)));
+    ring.chain(edges.iter().map(move |&j| (i as u32, j, Vec2::ZERO)))
 }
 
 /// Squared errors of the ring of an object, and how many neighbours are still there.
@@ -60,7 +52,13 @@ pub(super) fn residual(objects: &[Object], ground: &Ground) -> f64 {
 
 /// Moves objects; `fixed` ones stay. `near` is how near to the least is near enough, in user units.
 pub(super) fn relax(objects: &mut [Object], ground: &Ground, fixed: &[bool], (steps, near): (usize, f64)) {
-    let moves = solved(&terms(objects, ground, fixed), fixed, (steps, near));
+    // Those in which something may move.
+    let counts = |i: &usize| {
+        let object = &objects[*i];
+        !object.is_gone && !(fixed[*i] && object.edges.iter().all(|&j| fixed[j as usize]))
+    };
+    let all = (0..objects.len()).filter(counts).flat_map(|i| terms(objects, ground, i));
+    let moves = solved(all, fixed, (steps, near));
     for (object, by) in objects.iter_mut().zip(moves) {
         object.at += by;
     }
@@ -68,7 +66,11 @@ pub(super) fn relax(objects: &mut [Object], ground: &Ground, fixed: &[bool], (st
 
 /// Moves that make the sum of all terms least, as far as `steps` go; `near` is near enough. To every term
 /// there is one the other way round.
-pub(super) fn solved(terms: &[Term], fixed: &[bool], (steps, near): (usize, f64)) -> Vec<Vec2> {
+pub(super) fn solved(
+    terms: impl Iterator<Item = Term>,
+    fixed: &[bool],
+    (steps, near): (usize, f64),
+) -> Vec<Vec2> {
     // Only what may move is part of the system.
     const FIXED: u32 = u32::MAX;
     let mut number = vec![FIXED; fixed.len()];
@@ -78,8 +80,8 @@ pub(super) fn solved(terms: &[Term], fixed: &[bool], (steps, near): (usize, f64)
     let mut degree = vec![0.0_f64; n];
     let mut force = vec![Vec2::ZERO; n];
     // Both ends free, and one of them.
-    let (mut pairs, mut held) = (Vec::with_capacity(terms.len() / 2), vec![0.0_f64; n]);
-    for &(i, j, error) in terms {
+    let (mut pairs, mut held) = (Vec::with_capacity(3 * n), vec![0.0_f64; n]);
+    for (i, j, error) in terms {
         let (i, j) = (number[i as usize], number[j as usize]);
         for (at, sign) in [(i, -1.0), (j, 1.0)] {
             if at != FIXED {
