@@ -187,9 +187,9 @@ class Sample:
                  f'inkscape:label="Shape"{params(given)} d="{d}" '
                  f'style="fill:{fill};fill-rule:evenodd;stroke:{stroke};stroke-width:0.75"/>')
 
-    def line(self, role, index, d, stroke, width=1, opacity=1):
+    def line(self, role, index, d, stroke, width=1, opacity=1, **given):
         self.add(f'<path id="{role}-{index}" class="rinceau-{role}" rinceau:role="{role}" '
-                 f'inkscape:label="{role.capitalize()} {index}" d="{d}" style="fill:none;stroke:{stroke};'
+                 f'inkscape:label="{role.capitalize()} {index}"{params(given)} d="{d}" style="fill:none;stroke:{stroke};'
                  f'stroke-opacity:{opacity};stroke-width:{width};stroke-linecap:round;stroke-linejoin:round"/>')
 
     def guides(self, *lines):
@@ -200,9 +200,9 @@ class Sample:
         for index, d in enumerate(lines, 1):
             self.line("boundary", index, d, "#0000ff", 0.75, 0.5)
 
-    def sprays(self, width, *lines):
+    def sprays(self, width, *lines, **given):
         for index, d in enumerate(lines, 1):
-            self.line("spray", index, d, "#000000", width, 0.08)
+            self.line("spray", index, d, "#000000", width, 0.08, **given)
 
     def seed(self, x, y):
         self.add(f'<circle id="start" class="rinceau-seed" rinceau:role="seed" inkscape:label="Start" '
@@ -515,8 +515,8 @@ def blocks():
 def euro():
     rng = random.Random(9)
     sample = Sample("euro", "Euro",
-                    "A word of sprayed strokes, filled with leaves: choose the flow as mode, and elements "
-                    "whose middle lies inside. After Figure 10 of Ijiri et al. 2008.")
+                    "A word of sprayed strokes, filled with leaves up to its rims. Choose the flow as mode, and "
+                    "they turn with the strokes. After Figure 10 of Ijiri et al. 2008.")
     tones = (MEADOW[0], MEADOW[1], mix(MEADOW[0], MEADOW[1], 0.5), mix(MEADOW[1], MEADOW[2], 0.5), MEADOW[2])
     places = lattice(17, 13, 8.5, 9.5)
     tone = in_turn(rng, tones, places, 11)
@@ -527,7 +527,7 @@ def euro():
                "M372,196 V288 C372,346 444,346 444,288 V196",
                "M498,338 V240 C498,208 514,192 540,194",
                "M626,192 C574,192 574,336 626,336 C678,336 678,192 626,192 Z"]
-    sample.sprays(42, *letters)
+    sample.sprays(42, *letters, edge="middle")
     sample.guides(*letters)
     sample.write()
 
