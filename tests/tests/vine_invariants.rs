@@ -22,6 +22,8 @@ use support::geometry::*;
 const ON_LINE: f64 = 3e-4;
 /// And this, in user units: a hundredth of the thinnest stem that is asked for.
 const LEAST_ON_LINE: f64 = 0.03;
+/// Curves are as exact as that, in widths of the widest stem.
+const EXACT: f64 = 1.0 / 200.0;
 
 /// How far a branch's edge may stand out of its parent's at the fork, in widths of the parent.
 const BULGE: f64 = 0.25;
@@ -67,21 +69,25 @@ impl Plant {
         let lines: Vec<Piece> =
             artwork.group("spines").unwrap().items.iter().map(|item| open(&item.parts[0].path)).collect();
         let all: Piece = lines.concat();
-        let on_line = (ON_LINE * bounds(&all).size().max_side()).max(LEAST_ON_LINE);
         let drawn = pieces(artwork, "stems");
         let items = &artwork.group("stems").unwrap().items;
         assert_eq!(drawn.len(), lines.len());
         let places = matched(&lines, &drawn);
         let outlines: Vec<Piece> = places.iter().map(|&place| drawn[place].clone()).collect();
         let is_main = |i: usize| items[places[i]].of == "stem";
+        let width = |i: usize| 2.0 * depth(&outlines[i], part_way(&lines[i].concat(), 0.2));
+        let widest = (0..lines.len()).map(width).fold(0.0, f64::max);
+        let on_line = (ON_LINE * bounds(&all).size().max_side()).max(LEAST_ON_LINE).max(EXACT * widest);
         let parent = |i: usize| {
             let start = lines[i][0][0];
+            // Of several, as where two branches leave a stem at one place, the one whose base is not there.
             let nearest = (0..lines.len())
                 .filter(|&j| j != i && bounds(&lines[j]).inflate(on_line, on_line).contains(start))
-                .map(|j| (along(&lines[j], start).0, j))
-                .min_by(|a, b| a.0.total_cmp(&b.0))
-                .filter(|nearest| nearest.0 < on_line)
-                .map(|nearest| nearest.1);
+                .map(|j| (along(&lines[j], start), j))
+                .filter(|((distance, _), _)| *distance < on_line)
+                .map(|((distance, s), j)| (s < 0.1 * length(&lines[j].concat()), distance, j))
+                .min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)))
+                .map(|nearest| nearest.2);
             assert!(is_main(i) || nearest.is_some(), "branch {i} starts on no stem, at {start:?}");
             nearest
         };

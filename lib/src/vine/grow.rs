@@ -380,6 +380,13 @@ impl<'a> Plant<'a> {
         Taper { start, tip, power: self.params.taper.max(1e-3) }
     }
 
+    /// The same for a main stem that was drawn, or goes through a band.
+    pub fn main_taper(&self) -> Taper {
+        let taper = self.taper(self.sizes.width);
+        // Where copies join, the end of one is the start of the next.
+        if self.params.repeat { Taper { tip: taper.start, ..taper } } else { taper }
+    }
+
     /// A branch of some length from a place, if it touches nothing.
     fn curve(&self, site: &Site, level: usize, length: f64, taper: &Taper) -> Option<(Vec<Node>, Vec<Met>)> {
         let fork = self.fork(site, length);

@@ -251,7 +251,7 @@ impl Container<'_> {
     /// itself.
     fn start(&mut self, plant: &mut Plant, ground: &Ground, rng: &mut Rng) -> Result<(), Error> {
         let repeat = plant.params.repeat;
-        let taper = plant.taper(plant.sizes.width);
+        let taper = plant.main_taper();
         let mut drawn: Vec<Stem> = Vec::new();
         for (stem, used) in self.stems.iter().zip(&mut *self.used) {
             if stem.path.elements().len() > MOST_NODES {
@@ -277,8 +277,6 @@ impl Container<'_> {
         }
         for mut stem in drawn {
             if repeat {
-                // Where the copies join, the end of one is the start of the next.
-                stem.taper.tip = stem.taper.start;
                 plant.add(stem);
             } else {
                 // One that leaves another is as wide as that one is there.

@@ -127,7 +127,7 @@ fn bottom(Ground { cells, clear, .. }: &Ground, from_wall: f64) -> Vec<Point> {
         .collect()
 }
 
-/// A wave from the left end of a band to its right end, with a whole number of periods.
+/// A wave from the left end of a band to its right end, with a whole number of periods: as high as fits.
 pub(super) fn wave(plant: &Plant, (left, width): (f64, f64), inradius: f64) -> Option<Stem> {
     let (clear, columns) = plant.cells.clearances();
     let middles = (0..clear.len()).step_by(columns).map(|i| plant.cells.middle(i).y);
@@ -136,19 +136,22 @@ pub(super) fn wave(plant: &Plant, (left, width): (f64, f64), inradius: f64) -> O
     let row = (0..clear.len() / columns).max_by(|&a, &b| at(a).total_cmp(&at(b)))?;
     let middle = middles.clone().nth(row)?;
     const LONG: f64 = 4.4;
-    const HIGH: f64 = 0.46;
+    const HIGH: [f64; 5] = [0.46, 0.42, 0.38, 0.33, 0.27];
     let periods = (width / (LONG * inradius)).round().max(1.0);
     const PER_PERIOD: usize = 8;
     let n = periods as usize * PER_PERIOD;
-    let point = |i: usize| {
-        let up = libm::sin(std::f64::consts::TAU * (i % PER_PERIOD) as f64 / PER_PERIOD as f64);
-        Point::new(left + width * i as f64 / n as f64, middle - HIGH * inradius * up)
+    let wave = |high: f64| {
+        let point = |i: usize| {
+            let up = libm::sin(std::f64::consts::TAU * (i % PER_PERIOD) as f64 / PER_PERIOD as f64);
+            Point::new(left + width * i as f64 / n as f64, middle - high * inradius * up)
+        };
+        let mut path = BezPath::new();
+        path.move_to(point(0));
+        (1..=n).for_each(|i| path.line_to(point(i)));
+        let stem = drawn(&path, plant.main_taper()).pop()?;
+        part_inside(&plant.cells, &stem).filter(|part| part.length() > 0.99 * stem.length())
     };
-    let mut path = BezPath::new();
-    path.move_to(point(0));
-    (1..=n).for_each(|i| path.line_to(point(i)));
-    let stem = drawn(&path, plant.taper(plant.sizes.width)).pop()?;
-    part_inside(&plant.cells, &stem).filter(|part| part.length() > 0.99 * stem.length())
+    HIGH.into_iter().find_map(wave)
 }
 
 /// A few cells, for a first look at what is free.
