@@ -55,7 +55,8 @@ pub(super) fn relax(objects: &mut [Object], ground: &Ground, fixed: &[bool], (st
     // Those in which something may move.
     let counts = |i: &usize| {
         let object = &objects[*i];
-        !object.is_gone && !(fixed[*i] && object.edges.iter().all(|&j| fixed[j as usize]))
+        let is_held = fixed[*i] && object.edges.iter().all(|&j| fixed[j as usize]);
+        !(object.is_gone || is_held)
     };
     let all = (0..objects.len()).filter(counts).flat_map(|i| terms(objects, ground, i));
     let moves = solved(all, fixed, (steps, near));
