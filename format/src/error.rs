@@ -1,5 +1,6 @@
 //! One error type: a sentence, where it happened, and what to do about it.
 
+use std::cell::RefCell;
 use std::fmt;
 
 /// A place in the drawing's text, counted as editors count: from 1, columns in characters.
@@ -18,11 +19,11 @@ impl Position {
     }
 }
 
-/// Positions of many places of one text, each in constant time: a table of where every
-/// stretch of the text starts. Counting from the top for each object is quadratic.
+/// Positions of many places of one text: a table of where every stretch of the text starts, as far
+/// as anyone has asked. Counting from the top for each object is quadratic.
 pub(crate) struct Positions<'t> {
     text: &'t [u8],
-    starts: Vec<Position>,
+    starts: RefCell<Vec<Position>>,
 }
 
 impl<'t> Positions<'t> {
@@ -30,19 +31,20 @@ impl<'t> Positions<'t> {
     const STRIDE: usize = 512;
 
     pub fn new(text: &'t str) -> Self {
-        let mut starts = vec![Position { line: 1, column: 1 }];
-        for stretch in text.as_bytes().chunks(Self::STRIDE) {
-            let at = starts.last().map_or(Position { line: 1, column: 1 }, |&start| advance(start, stretch));
-            starts.push(at);
-        }
-        Positions { text: text.as_bytes(), starts }
+        Positions { text: text.as_bytes(), starts: RefCell::new(vec![Position { line: 1, column: 1 }]) }
     }
 
     /// The position of byte `offset`.
     pub fn at(&self, offset: usize) -> Position {
         let offset = offset.min(self.text.len());
-        let stretch = offset / Self::STRIDE;
-        advance(self.starts[stretch], &self.text[stretch * Self::STRIDE..offset])
+        let stretch = |i: usize| &self.text[i * Self::STRIDE..offset.min((i + 1) * Self::STRIDE)];
+        let wanted = offset / Self::STRIDE;
+        let mut starts = self.starts.borrow_mut();
+        for i in starts.len() - 1..wanted {
+            let next = advance(starts[i], stretch(i));
+            starts.push(next);
+        }
+        advance(starts[wanted], stretch(wanted))
     }
 }
 
