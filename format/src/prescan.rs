@@ -20,23 +20,20 @@ const FEW_ATTRIBUTES: usize = 64;
 /// The parser reserves room for this many `<` and `=` before it looks at any of them: so
 /// many times the limit of nodes are room enough.
 const SIGNS_PER_NODE: [(u8, usize); 2] = [(b'<', 4), (b'=', 16)];
+/// Bytes that are scanned before their signs are counted.
+const STRETCH: usize = 1 << 14;
 /// A reference to an entity is looked up by comparing names, so an empty one has a price too.
 const LEAST_COST: usize = 16;
 
 /// Refuses text that exceeds the limits.
 pub(crate) fn prescan(text: &str, limits: &Limits) -> Result<(), Error> {
-    for (sign, most) in SIGNS_PER_NODE {
-        let most = limits.nodes.saturating_mul(most);
-        // Most texts are shorter than that.
-        if text.len() > most && memchr_iter(sign, text.as_bytes()).count() > most {
-            return Err(over(text, "too-many-nodes", 0, too_many_nodes(limits)));
-        }
-    }
     let mut scan = Scan {
         text,
         bytes: text.as_bytes(),
         limits,
         nodes: 0,
+        counted: 0,
+        signs: [0; SIGNS_PER_NODE.len()],
         scopes: Vec::new(),
         expansion: 0,
         comparisons: 0,
@@ -59,6 +56,9 @@ struct Scan<'a> {
     bytes: &'a [u8],
     limits: &'a Limits,
     nodes: usize,
+    /// How far the signs that the parser reserves room for are counted, and how many there are.
+    counted: usize,
+    signs: [usize; SIGNS_PER_NODE.len()],
     /// For each open element, the namespace declarations in scope.
     scopes: Vec<usize>,
     expansion: usize,
@@ -72,6 +72,10 @@ impl Scan<'_> {
         let mut at = 0;
         while let Some(skipped) = memchr2(b'<', b'&', &self.bytes[at..]) {
             at += skipped;
+            // While the text is still in the processor's cache.
+            if at - self.counted >= STRETCH {
+                self.count_signs(at)?;
+            }
             if self.bytes[at] == b'&' {
                 at = self.reference(at)?;
                 continue;
@@ -81,6 +85,19 @@ impl Scan<'_> {
                 return Err(over(self.text, "too-many-nodes", at, too_many_nodes(self.limits)));
             }
             at = self.markup(at)?;
+        }
+        self.count_signs(self.bytes.len())
+    }
+
+    /// Counts the signs up to a place.
+    fn count_signs(&mut self, to: usize) -> Result<(), Error> {
+        let stretch = &self.bytes[self.counted..to];
+        self.counted = to;
+        for ((sign, most), count) in SIGNS_PER_NODE.iter().zip(&mut self.signs) {
+            *count += memchr_iter(*sign, stretch).count();
+            if *count > self.limits.nodes.saturating_mul(*most) {
+                return Err(over(self.text, "too-many-nodes", 0, too_many_nodes(self.limits)));
+            }
         }
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! Reading the input and writing the output, whole or not at all.
 
-use rinceau_format::{Error, Limits, printable};
+use rinceau_format::{Error, Limits, printable, read_file};
 use std::fs::{self, File};
 use std::io::{self, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
@@ -8,10 +8,9 @@ use std::path::{Path, PathBuf};
 /// Reads a file, or standard input, up to one byte more than the limit (which the document
 /// then refuses).
 pub fn read(path: Option<&Path>) -> Result<Vec<u8>, Error> {
-    let most = Limits::default().bytes as u64 + 1;
-    let mut bytes = Vec::new();
+    let most = Limits::default().bytes;
     let result = match path {
-        Some(path) => File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes)),
+        Some(path) => read_file(path, most),
         None if io::stdin().is_terminal() => {
             return Err(Error::new(
                 "no-input",
@@ -19,16 +18,18 @@ pub fn read(path: Option<&Path>) -> Result<Vec<u8>, Error> {
                 "Name an SVG file, or pipe one to standard input",
             ));
         }
-        None => io::stdin().take(most).read_to_end(&mut bytes),
+        None => {
+            let mut bytes = Vec::new();
+            io::stdin().take(most as u64 + 1).read_to_end(&mut bytes).map(|_| bytes)
+        }
     };
-    match result {
-        Ok(_) => Ok(bytes),
-        Err(error) => Err(Error::new(
+    result.map_err(|error| {
+        Error::new(
             "cannot-read",
             format!("The drawing '{}' cannot be read: {}", name(path), reason(&error)),
             "Check its name and that you may open it",
-        )),
-    }
+        )
+    })
 }
 
 /// Writes a file, or standard output, at once. A file appears whole under its name or stays

@@ -2,7 +2,7 @@
 //! parser alone.
 
 use kurbo::{Affine, Circle, Shape};
-use rinceau_format::{Artwork, Document, Group, Item, Part, Recipe, Selection, Style};
+use rinceau_format::{Artwork, Document, Group, Item, Limits, Part, Recipe, Selection, Style, read_file};
 use std::fmt::Write;
 use std::time::{Duration, Instant};
 
@@ -63,7 +63,8 @@ fn main() {
         let text = std::str::from_utf8(&bytes).expect("text");
         let parse = || drop(roxmltree::Document::parse(text).expect("XML"));
         let (parser, all) = shortest(parse, || {
-            let document = Document::from_bytes(std::fs::read(&input).expect("a file")).expect("a drawing");
+            let document = Document::from_bytes(read_file(&input, Limits::default().bytes).expect("a file"))
+                .expect("a drawing");
             let scene = document.scene(&Selection::default()).expect("a scene");
             assert_eq!(scene.containers.len(), 1);
             let mut out = std::fs::File::create(&output).expect("a file");

@@ -108,11 +108,12 @@ impl Document {
 
     fn put_layer(&self, artwork: &Artwork, recipe: &Recipe, sink: &mut Sink) -> Result<(), Error> {
         self.parse(|xml| {
+            let survey = Survey::of(xml, &recipe.label);
             let mut mine = None;
             // Layers whose sources are all filled again, with others.
             let mut covered: Vec<Node> = Vec::new();
             let sources: HashSet<&String> = recipe.sources.iter().collect();
-            for node in result_nodes(xml) {
+            for &node in &survey.results {
                 let old = read_recipe(self, node)?;
                 if old.generator != recipe.generator {
                     continue;
@@ -146,8 +147,8 @@ impl Document {
                 .at(self.position(other)));
             }
             match mine {
-                Some(node) => self.replaced(xml, node, (artwork, recipe), sink),
-                None => self.appended(xml, (artwork, recipe), sink),
+                Some(node) => self.replaced(xml, node, (artwork, recipe), &survey.ids, sink),
+                None => self.appended(xml, (artwork, recipe), &survey, sink),
             }
         })
     }
@@ -157,6 +158,7 @@ impl Document {
         xml: &roxmltree::Document,
         node: Node,
         (artwork, recipe): (&Artwork, &Recipe),
+        ids: &Ids,
         sink: &mut Sink,
     ) -> Result<(), Error> {
         self.check_verbatim(node)?;
@@ -180,7 +182,7 @@ impl Document {
             .next()
             .unwrap_or("g")
             .to_owned();
-        let id = node.plain("id").map_or_else(|| free_id(xml, &recipe.label), str::to_owned);
+        let id = node.plain("id").map_or_else(|| ids.free(), str::to_owned);
         let newline = self.newline();
         let target = Target {
             id: &id,
@@ -255,12 +257,12 @@ impl Document {
         &self,
         xml: &roxmltree::Document,
         (artwork, recipe): (&Artwork, &Recipe),
+        survey: &Survey,
         sink: &mut Sink,
     ) -> Result<(), Error> {
         let root = xml.root_element();
         self.check_verbatim(root)?;
-        let has_rules = xml.descendants().any(|node| node.tag_name().name() == "style");
-        let guard = match has_rules {
+        let guard = match survey.has_rules {
             true => Resolver::new(xml, &self.limits)?.cascade.guard(),
             false => Guard::default(),
         };
@@ -268,7 +270,7 @@ impl Document {
         let element = &self.text[range.clone()];
         let (tag_end, closes) = start_tag_end(element);
         let prefix = self.prefix_of(root);
-        let id = free_id(xml, &recipe.label);
+        let id = survey.ids.free();
         let newline = self.newline();
         let target = Target {
             id: &id,
@@ -333,15 +335,40 @@ impl Document {
     }
 }
 
+/// What one look at every node tells about where a layer can go.
+struct Survey<'a, 'i> {
+    /// As [`result_nodes`].
+    results: Vec<Node<'a, 'i>>,
+    /// True if there are style sheets.
+    has_rules: bool,
+    ids: Ids<'a>,
+}
+
+impl<'a, 'i> Survey<'a, 'i> {
+    fn of(xml: &'a roxmltree::Document<'i>, label: &str) -> Self {
+        let mut survey = Survey { results: Vec::new(), has_rules: false, ids: Ids::of_label(label) };
+        for node in xml.descendants().filter(Node::is_element) {
+            push_outermost(&mut survey.results, node);
+            survey.has_rules |= node.tag_name().name() == "style";
+            survey.ids.note(node);
+        }
+        survey
+    }
+}
+
 /// Nodes of result layers, outermost only.
 pub(super) fn result_nodes<'a, 'i>(xml: &'a roxmltree::Document<'i>) -> Vec<Node<'a, 'i>> {
-    let mut nodes: Vec<Node> = Vec::new();
-    for node in xml.descendants().filter(|node| node.attribute((NAMESPACE, "result")).is_some()) {
-        if nodes.last().is_none_or(|last| node.range().start >= last.range().end) {
-            nodes.push(node);
-        }
-    }
+    let mut nodes = Vec::new();
+    xml.descendants().for_each(|node| push_outermost(&mut nodes, node));
     nodes
+}
+
+/// Adds a node if it is a result layer behind the last one, not in it.
+fn push_outermost<'a, 'i>(nodes: &mut Vec<Node<'a, 'i>>, node: Node<'a, 'i>) {
+    let is_outside = |last: &Node| node.range().start >= last.range().end;
+    if node.attribute((NAMESPACE, "result")).is_some() && nodes.last().is_none_or(is_outside) {
+        nodes.push(node);
+    }
 }
 
 pub(super) fn read_recipe(document: &Document, node: Node) -> Result<Recipe, Error> {
@@ -380,34 +407,48 @@ pub(super) fn label_of(node: Node) -> String {
 
 /// An id made from a label that no object has.
 pub(super) fn free_id(xml: &roxmltree::Document, label: &str) -> String {
-    let mut base = String::new();
-    for c in label.chars().take(40) {
-        let c = if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
-        if !(c == '-' && (base.is_empty() || base.ends_with('-'))) {
-            base.push(c);
+    let mut ids = Ids::of_label(label);
+    xml.descendants().for_each(|node| ids.note(node));
+    ids.free()
+}
+
+/// The ids that a new one could meet.
+struct Ids<'a> {
+    base: String,
+    taken: HashSet<&'a str>,
+}
+
+impl<'a> Ids<'a> {
+    fn of_label(label: &str) -> Self {
+        let mut base = String::new();
+        for c in label.chars().take(40) {
+            let c = if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+            if !(c == '-' && (base.is_empty() || base.ends_with('-'))) {
+                base.push(c);
+            }
         }
+        let base = match base.trim_end_matches('-') {
+            "" => "ornament".to_owned(),
+            base if base.starts_with(|c: char| c.is_ascii_digit()) => format!("ornament-{base}"),
+            base => base.to_owned(),
+        };
+        Ids { base, taken: HashSet::new() }
     }
-    let base = match base.trim_end_matches('-') {
-        "" => "ornament".to_owned(),
-        base if base.starts_with(|c: char| c.is_ascii_digit()) => format!("ornament-{base}"),
-        base => base.to_owned(),
-    };
-    // The ids of the layer's content start with the layer's, so no id may start with it and a
-    // dash. A number of seven digits is as long as the limit of nodes can make it.
-    let longest = base.len() + 1 + 7;
-    let mut taken: HashSet<&str> = HashSet::new();
-    for id in xml.descendants().filter_map(|node| node.plain("id")).filter(|id| id.starts_with(&base)) {
-        taken.insert(id);
-        taken.extend(id.match_indices('-').take_while(|(i, _)| *i <= longest).map(|(i, _)| &id[..i]));
+
+    fn note(&mut self, node: Node<'a, '_>) {
+        let Some(id) = node.plain("id").filter(|id| id.starts_with(&self.base)) else { return };
+        // The ids of the layer's content start with the layer's, so no id may start with it and a
+        // dash. A number of seven digits is as long as the limit of nodes can make it.
+        let longest = self.base.len() + 1 + 7;
+        self.taken.insert(id);
+        self.taken.extend(id.match_indices('-').take_while(|(i, _)| *i <= longest).map(|(i, _)| &id[..i]));
     }
-    let is_free = |id: &str| !taken.contains(id);
-    let mut id = base.clone();
-    let mut n = 1;
-    while !is_free(&id) {
-        n += 1;
-        id = format!("{base}_{n}");
+
+    fn free(&self) -> String {
+        let numbered = (2..).map(|n| format!("{}_{n}", self.base));
+        let mut ids = std::iter::once(self.base.clone()).chain(numbered);
+        ids.find(|id| !self.taken.contains(id.as_str())).unwrap_or_default()
     }
-    id
 }
 
 /// An attribute value escaped for the quotes that stand around it.

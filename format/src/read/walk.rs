@@ -117,12 +117,15 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
     fn visit(&mut self, visit: Visit<'a, 'i>) -> Result<(), Error> {
         match visit {
             Visit::Row(place) => {
-                if let Some(next) = place.node.next_sibling_element() {
-                    self.stack.push(Visit::Row(Place { node: next, ..place.clone() }));
-                }
                 // An ordinary drawing around the annotated objects costs nothing.
                 let only_marked = self.gathering.is_empty() || place.hidden;
-                if only_marked && !self.resolver.is_marked(place.node) { Ok(()) } else { self.enter(place) }
+                let is_passed = |node: &Node| only_marked && !self.resolver.is_marked(*node);
+                let mut row = std::iter::successors(Some(place.node), Node::next_sibling_element);
+                let Some(node) = row.by_ref().find(|node| !is_passed(node)) else { return Ok(()) };
+                if let Some(next) = row.next() {
+                    self.stack.push(Visit::Row(Place { node: next, ..place.clone() }));
+                }
+                self.enter(Place { node, ..place })
             }
             Visit::One(place) => self.enter(place),
             Visit::Close => self.gathering.close(),
