@@ -253,7 +253,10 @@ impl<'a> Plant<'a> {
         let length = stem.end;
         let step = (1.4 * stem.taper.start + self.sizes.gap).max(length / 32.0);
         // Not at the very start, where the parent is still near, nor under the tip's flower.
-        let mut s = if stem.parent.is_some() { (0.06 * length).max(2.0 * step) } else { 0.6 * step };
+        let mut s = match stem.parent {
+            Some(_) => (0.06 * length).max(2.0 * step).max(self.parting(stem)),
+            None => 0.6 * step,
+        };
         while s < 0.96 * length {
             let (start, longest) = (stem.at(s), self.longest(parent, s));
             let site = 2 * sites.len();
@@ -261,6 +264,22 @@ impl<'a> Plant<'a> {
             sites.push(Site { parent, start, s, side: SIDES[0] });
             s += step;
         }
+    }
+
+    /// The arc length from which on a branch is clear of its parent's stroke. What left it before
+    /// would start in that stroke as well.
+    fn parting(&self, branch: &Stem) -> f64 {
+        let Some((index, at)) = branch.parent else { return 0.0 };
+        let parent = &self.stems[index];
+        let is_in_parent = |node: &&Node| {
+            let clear = 0.5 * (parent.width(at) + branch.width(node.s)) + 0.5 * self.sizes.gap;
+            // A branch is not farther along its parent than along itself.
+            let reach = node.s + clear;
+            let first = parent.nodes.partition_point(|other| other.s < at - reach).saturating_sub(1);
+            let near = parent.nodes[first..].windows(2).take_while(|pair| pair[0].s <= at + reach);
+            near.into_iter().any(|pair| point_segment(node.p, pair[0].p, pair[1].p) < clear)
+        };
+        branch.nodes.iter().find(|node| !is_in_parent(node)).map_or(branch.length(), |node| node.s)
     }
 
     /// The longest branch that the rules allow.
@@ -284,13 +303,14 @@ impl<'a> Plant<'a> {
             }
             let (level, length) = (self.stems[parent].level, self.stems[parent].end);
             let count = of_level(&self.params.branches, level).unwrap_or(0.0) as usize;
+            let parting = self.parting(&self.stems[parent]);
             // The first branch leaves on the inside of its parent's curl.
             let first = self.stems[parent].side;
             for i in 0..if level + 1 < self.params.levels { count } else { 0 } {
                 let s = (i + 1) as f64 / (count + 1) as f64 * length;
                 let side = if i % 2 == 0 { first } else { -first };
                 let site = Site { parent, start: self.stems[parent].at(s), s, side };
-                if self.is_occupied(parent, s) {
+                if s < parting || self.is_occupied(parent, s) {
                     continue;
                 }
                 let longest = self.longest(parent, s);
