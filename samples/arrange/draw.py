@@ -501,12 +501,17 @@ def blocks():
     tone = in_turn(rng, tones, places, 1.2 * across)
     sample.example([named("block", rect(x, y, across - joint, down - joint, 3, fill=t))
                     for (x, y), t in zip(places, tone)], x=14)
-    wave = "M220,{} C310,{} 380,{} 451,{} C522,{} 592,{} 682,{}"
-    waves = [wave.format(*(y + dy for dy in (0, -40, -40, -18, 4, 4, -36))) for y in (46, 196, 346, 496)]
-    sample.container("M226,26 H676 V474 H226 Z", edge="inside", mode="flow", fill="#f4ebd6")
-    sample.boundaries(*waves[1:3])
+    # A threshold of three courses about one centre, far below. Rows that bend more than this slide against each other.
+    reach = 0.21
+    ends = [(r * math.sin(reach), r * math.cos(reach)) for r in (1100, 953, 806, 659)]
+    arcs = [f"M{451 - dx:.1f},{1126 - dy:.1f} A{r},{r} 0 0 1 {451 + dx:.1f},{1126 - dy:.1f}"
+            for r, (dx, dy) in zip((1100, 953, 806, 659), ends)]
+    (dx, dy), r = ends[3], 659
+    panel = f"{arcs[0]} L{451 + dx:.1f},{1126 - dy:.1f} A{r},{r} 0 0 0 {451 - dx:.1f},{1126 - dy:.1f} Z"
+    sample.container(panel, edge="inside", mode="flow", fill="#f4ebd6")
+    sample.boundaries(*arcs[1:3])
     # The outer ones keep rows level at the edges of the panel.
-    sample.guides(*waves)
+    sample.guides(*arcs)
     sample.write()
 
 

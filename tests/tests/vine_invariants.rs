@@ -22,8 +22,9 @@ use support::geometry::*;
 const ON_LINE: f64 = 3e-4;
 /// And this, in user units: a hundredth of the thinnest stem that is asked for.
 const LEAST_ON_LINE: f64 = 0.03;
-/// Curves are as exact as that, in widths of the widest stem.
-const EXACT: f64 = 1.0 / 200.0;
+/// Curves are as exact as that, in widths of the widest stem a fifth of its way along, where the
+/// strongest taper has halved it: 1/250 of the full width, and rounding.
+const EXACT: f64 = 1.0 / 100.0;
 
 /// How far a branch's edge may stand out of its parent's at the fork, in widths of the parent.
 const BULGE: f64 = 0.25;

@@ -58,6 +58,8 @@ pub(super) struct Plant<'a> {
     pub crossings: Vec<Crossing>,
     /// Where clip art is attached to each stem: the arc length there, and its size.
     attached: Vec<Vec<(f64, f64)>>,
+    /// The stretches of each stem in whose stroke a branch still lies that has left it.
+    shared: Vec<Vec<(f64, f64)>>,
     /// How many stems have had their branches.
     grown: usize,
     forks: Choices,
@@ -141,6 +143,7 @@ impl<'a> Plant<'a> {
             arts: Vec::new(),
             crossings: Vec::new(),
             attached: Vec::new(),
+            shared: Vec::new(),
             grown: 0,
             forks,
             tips,
@@ -154,6 +157,11 @@ impl<'a> Plant<'a> {
     pub fn add(&mut self, mut stem: Stem) -> usize {
         let index = self.stems.len();
         self.attached.push(Vec::new());
+        self.shared.push(Vec::new());
+        if let Some((parent, s)) = stem.parent {
+            let parted = s + self.parting(&stem);
+            self.shared[parent].push((s, parted));
+        }
         // A curl ends where it gets tighter than it is wide.
         let tight = stem.nodes.iter().find(|node| node.curvature.abs() * stem.width(node.s) > TIGHT);
         stem.end = tight.map_or(stem.length(), |node| node.s).max(0.5 * stem.length());
@@ -576,12 +584,15 @@ impl<'a> Plant<'a> {
         true
     }
 
-    /// True if no branch may leave a stem at a place: another crosses it there, or the base of a
-    /// leaf lies within it.
+    /// True if no branch may leave a stem at a place: another crosses it there, or has left and is
+    /// not clear of it yet, or the base of a leaf lies within it.
     fn is_occupied(&self, stem: usize, s: f64) -> bool {
         let near = self.stems[stem].width(s) + self.sizes.gap;
         let at_base = |&(at, size): &(f64, f64)| (at - s).abs() < 0.4 * size + near;
-        self.is_near_crossing(stem, s) || self.attached[stem].iter().any(at_base)
+        let is_shared = |&(from, to): &(f64, f64)| (from..to).contains(&s);
+        self.is_near_crossing(stem, s)
+            || self.attached[stem].iter().any(at_base)
+            || self.shared[stem].iter().any(is_shared)
     }
 
     /// True if a place on a stem is too near a crossing for anything to grow there.
