@@ -266,10 +266,18 @@ impl<'a> Plant<'a> {
             None => 0.6 * step,
         };
         while s < 0.96 * length {
-            let (start, longest) = (stem.at(s), self.longest(parent, s));
-            let site = 2 * sites.len();
-            heap.extend([site, site + 1].map(|site| Offer { length: longest, site }));
-            sites.push(Site { parent, start, s, side: SIDES[0] });
+            // What is taken stays so: most places are ruled out at once, while the stem is at hand.
+            if !self.is_occupied(parent, s) {
+                let (site, longest) = (2 * sites.len(), self.longest(parent, s));
+                let start = Site { parent, start: stem.at(s), s, side: SIDES[0] };
+                for (i, side) in SIDES.into_iter().enumerate() {
+                    let length = self.not_ruled_out(&Site { side, ..start }, longest);
+                    if length >= self.shortest() {
+                        heap.push(Offer { length, site: site + i });
+                    }
+                }
+                sites.push(start);
+            }
             s += step;
         }
     }
