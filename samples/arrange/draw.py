@@ -503,10 +503,10 @@ def blocks():
                     for (x, y), t in zip(places, tone)], x=14)
     # A threshold of three courses about one centre, far below. Rows that bend more than this slide against each other.
     reach = 0.21
-    ends = [(r * math.sin(reach), r * math.cos(reach)) for r in (1100, 953, 806, 659)]
+    ends = [(r * math.sin(reach), r * math.cos(reach)) for r in (1100, 951, 802, 653)]
     arcs = [f"M{451 - dx:.1f},{1126 - dy:.1f} A{r},{r} 0 0 1 {451 + dx:.1f},{1126 - dy:.1f}"
-            for r, (dx, dy) in zip((1100, 953, 806, 659), ends)]
-    (dx, dy), r = ends[3], 659
+            for r, (dx, dy) in zip((1100, 951, 802, 653), ends)]
+    (dx, dy), r = ends[3], 653
     panel = f"{arcs[0]} L{451 + dx:.1f},{1126 - dy:.1f} A{r},{r} 0 0 0 {451 - dx:.1f},{1126 - dy:.1f} Z"
     sample.container(panel, edge="inside", mode="flow", fill="#f4ebd6")
     sample.boundaries(*arcs[1:3])

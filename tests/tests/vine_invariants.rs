@@ -154,21 +154,29 @@ fn without_copies(artwork: &Artwork, (left, period): (f64, f64)) -> Artwork {
 /// The outline around each centre line.
 fn matched(lines: &[Piece], outlines: &[Piece]) -> Vec<usize> {
     let boxes: Vec<Rect> = outlines.iter().map(|outline| bounds(outline)).collect();
-    let mut places: Vec<usize> = Vec::new();
-    for (i, line) in lines.iter().enumerate() {
-        // Not the ends, which may be cut askew, nor the half towards the tip, which may be thinner than
-        // chords are exact.
+    // Not the ends, which may be cut askew, nor the half towards the tip, which may be thinner than
+    // chords are exact.
+    let samples = |line: &Piece| {
         let points = line.iter().max_by(|a, b| length(a).total_cmp(&length(b))).expect("a centre line");
-        let samples: Vec<Point> = [0.15, 0.25, 0.35, 0.45].map(|share| part_way(points, share)).to_vec();
-        // Of several, as where a twig starts within its parent, the narrowest.
-        let fits = |&j: &usize| {
-            !places.contains(&j) && samples.iter().all(|&p| boxes[j].contains(p) && covers(&outlines[j], p))
-        };
+        [0.15, 0.25, 0.35, 0.45].map(|share| part_way(points, share))
+    };
+    // Those around a line, the narrowest first: a twig may start within its parent.
+    let around = |line: &Piece| {
+        let samples = samples(line);
+        let is_in = |j: &usize| samples.iter().all(|&p| boxes[*j].contains(p) && covers(&outlines[*j], p));
         let width = |j: usize| samples.iter().map(|&p| depth(&outlines[j], p)).sum::<f64>();
-        let best = (0..outlines.len()).filter(fits).min_by(|&a, &b| width(a).total_cmp(&width(b)));
-        let best =
-            best.unwrap_or_else(|| panic!("no outline is around the centre line {i}, at {:?}", samples[0]));
-        places.push(best);
+        let mut around: Vec<usize> = (0..outlines.len()).filter(is_in).collect();
+        around.sort_by(|&a, &b| width(a).total_cmp(&width(b)));
+        around
+    };
+    let around: Vec<Vec<usize>> = lines.iter().map(around).collect();
+    // What has least to choose from chooses first.
+    let mut order: Vec<usize> = (0..lines.len()).collect();
+    order.sort_by_key(|&i| around[i].len());
+    let mut places = vec![usize::MAX; lines.len()];
+    for i in order {
+        let free = around[i].iter().find(|place| !places.contains(place));
+        places[i] = *free.unwrap_or_else(|| panic!("no outline is around the centre line {i}"));
     }
     places
 }

@@ -42,6 +42,13 @@ pub(super) struct Object {
     waited: u32,
 }
 
+impl Object {
+    /// True if its ring is all of its neighbours, and nothing else.
+    pub fn is_whole(&self) -> bool {
+        self.ring.len() == self.edges.len() && self.ring.iter().all(|link| self.edges.contains(&link.to))
+    }
+}
+
 /// Where a neighbour should stand.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Link {
@@ -348,8 +355,7 @@ impl<'a> Arrangement<'a> {
             let index = self.grown[number];
             let object = &self.objects[index as usize];
             let Some((copy, _)) = object.copy else { continue };
-            let is_whole = object.ring.len() == object.edges.len()
-                && object.ring.iter().all(|link| object.edges.contains(&link.to));
+            let is_whole = object.is_whole();
             let (sum, count) = ring_error(&self.objects, object, self.ground);
             let present = (sum / count.max(1.0)).sqrt() / self.example.mean;
             let copy_of = |i: u32| self.objects[i as usize].copy.map(|copy| copy.0);
@@ -418,12 +424,10 @@ impl<'a> Arrangement<'a> {
     pub fn broken(&self) -> f64 {
         let is_broken = |&&i: &&u32| {
             let object = &self.objects[i as usize];
-            let is_linked = |link: &Link| {
-                self.objects[link.to as usize].copy.is_some() && object.edges.contains(&link.to)
-            };
+            let is_seed = |link: &Link| self.objects[link.to as usize].copy.is_none();
             let (sum, count) = ring_error(&self.objects, object, self.ground);
-            object.ring.len() != object.edges.len()
-                || !object.ring.iter().all(is_linked)
+            !object.is_whole()
+                || object.ring.iter().any(is_seed)
                 || (sum / count.max(1.0)).sqrt() > 0.2 * self.example.mean
         };
         self.grown.iter().filter(is_broken).count() as f64 / self.grown.len().max(1) as f64

@@ -73,7 +73,10 @@ pub(super) fn part(arrangement: &mut Arrangement, fixed: &[bool], example: &Anal
     // Those to be looked at, in the order in which they grew; and how far things went since the table
     // was made.
     let (mut todo, mut drift): (Vec<u32>, f64) = (arrangement.grown.clone(), 0.0);
-    for round in 0..=ROUNDS {
+    // True if two are too near that both have to stay where they are.
+    let mut is_stuck = false;
+    let mut round = 0;
+    loop {
         const STALE: f64 = 0.1;
         if drift > STALE * reach {
             table = self::table(arrangement, ground, reach);
@@ -105,6 +108,7 @@ pub(super) fn part(arrangement: &mut Arrangement, fixed: &[bool], example: &Anal
                         _ => j < i,
                     };
                     goes |= pair.is_bad && stays && !gone.contains(&j);
+                    is_stuck |= pair.is_bad && fixed[i as usize] && fixed[j as usize];
                 }
             }
             if round == ROUNDS && goes {
@@ -118,10 +122,11 @@ pub(super) fn part(arrangement: &mut Arrangement, fixed: &[bool], example: &Anal
             arrangement.take_out(&gone);
             return;
         }
-        if moves.is_empty() {
+        if moves.is_empty() && !is_stuck {
             return;
         }
-        let is_last = round + 1 == ROUNDS;
+        round = if moves.is_empty() { ROUNDS } else { round + 1 };
+        let is_last = round == ROUNDS;
         has_moved.fill(is_last);
         let mut farthest = 0.0;
         for &(i, by) in &moves {

@@ -25,9 +25,7 @@ pub(super) type Term = (u32, u32, Vec2);
 fn terms<'a>(objects: &'a [Object], ground: &'a Ground, i: usize) -> impl Iterator<Item = Term> + 'a {
     let object = &objects[i];
     // Elements that lost or gained an edge, and seeds, keep the shape that they have.
-    let is_whole = object.copy.is_some()
-        && object.ring.len() == object.edges.len()
-        && object.ring.iter().all(|link| object.edges.contains(&link.to));
+    let is_whole = object.copy.is_some() && object.is_whole();
     let (ring, edges): (&[Link], &[u32]) = if is_whole { (&object.ring, &[]) } else { (&[], &object.edges) };
     let apart = |link: &Link| ground.near(objects[link.to as usize].at, object.at) - object.at;
     let ring = ring.iter().map(move |link| (i as u32, link.to, link.offset - apart(link)));
