@@ -5,6 +5,7 @@ mod diagram;
 mod edit;
 mod flip;
 mod history;
+mod keep;
 mod layers;
 mod mark;
 mod problems;
@@ -20,6 +21,7 @@ use roxmltree::ParsingOptions;
 use std::sync::{Arc, OnceLock};
 
 pub(crate) use history::forms_of_step;
+pub use keep::Held;
 pub use layers::Layer;
 pub use problems::Problem;
 

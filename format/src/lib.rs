@@ -42,7 +42,7 @@ mod write;
 mod xml;
 
 pub use artwork::{Artwork, Group, Item, Part, Pieces, Step, Stream, Symbol, SymbolItem};
-pub use document::{Document, Layer, Problem};
+pub use document::{Document, Held, Layer, Problem};
 pub use error::{Error, Position, is_deceptive, printable};
 pub use file::read_file;
 pub use limits::Limits;

@@ -84,6 +84,12 @@ const LONGEST_VALUE: usize = 4096;
 /// Widths beyond this many user units are left out, as the coordinates would be.
 const WIDEST: f64 = 1e9;
 
+/// True if a property paints, whoever it is given to.
+pub(crate) fn is_paint(name: &str) -> bool {
+    let is_place = matches!(name, "transform" | "transform-origin");
+    (INHERITED.contains(&name) || OWN.contains(&name)) && !is_place
+}
+
 /// Red, green and blue of an opaque CSS colour; `None` for anything else, such as a gradient.
 pub fn rgb(colour: &str) -> Option<[u8; 3]> {
     let colour: svgtypes::Color = colour.trim().parse().ok()?;

@@ -1,6 +1,7 @@
 //! Artwork to a result layer.
 
 mod page;
+pub(crate) mod record;
 pub(crate) mod scene;
 mod stream;
 
@@ -9,7 +10,8 @@ use crate::number::{write_number, write_path_data};
 use crate::recipe::Recipe;
 use crate::style::Guard;
 use crate::vocabulary::{INKSCAPE, NAMESPACE, SODIPODI, SVG, XLINK};
-use kurbo::Affine;
+use kurbo::{Affine, Rect};
+use record::Record;
 use std::borrow::Cow;
 use std::fmt::Write;
 use std::io;
@@ -151,9 +153,11 @@ pub(crate) fn content(sink: &mut Sink, artwork: &Artwork, target: &Target) {
     if !artwork.symbols.is_empty() {
         symbols(&mut sink.text, artwork, target);
     }
+    let mut record = Record::default();
     for group in &artwork.groups {
-        sublayer(sink, group, artwork, target);
+        sublayer(sink, group, artwork, target, &mut record);
     }
+    record.write(&mut sink.text, target.svg_prefix, target.newline);
     sink.text.push_str(target.newline);
 }
 
@@ -212,7 +216,7 @@ fn write_use(out: &mut String, id: &str, pose: Affine, style: &str, target: &Tar
     out.push_str("/>");
 }
 
-fn sublayer(sink: &mut Sink, group: &Group, artwork: &Artwork, target: &Target) {
+fn sublayer(sink: &mut Sink, group: &Group, artwork: &Artwork, target: &Target, record: &mut Record) {
     let out = &mut sink.text;
     let (prefix, newline) = (target.svg_prefix, target.newline);
     let id = format!("{}-{}", target.id, group.name);
@@ -223,7 +227,9 @@ fn sublayer(sink: &mut Sink, group: &Group, artwork: &Artwork, target: &Target) 
     if group.items.iter().any(|item| item.clone.is_some()) {
         attribute(out, "xmlns:xlink", XLINK);
     }
-    target.guard_group(out, if group.hidden { "display:none" } else { "" });
+    let css = if group.hidden { "display:none" } else { "" };
+    target.guard_group(out, css);
+    record.begin(&group.name, &target.guard.group(css));
     out.push('>');
     let grouped = group.items.len() > SIBLINGS;
     for (chunk_index, chunk) in group.items.chunks(SIBLINGS).enumerate() {
@@ -236,7 +242,12 @@ fn sublayer(sink: &mut Sink, group: &Group, artwork: &Artwork, target: &Target) 
         }
         for (i, item) in chunk.iter().enumerate() {
             out.push_str(newline);
+            let start = out.len();
             write_item(out, item, &format!("{id}-{}", chunk_index * SIBLINGS + i + 1), artwork, target);
+            if record.has_room() {
+                let bounds = bounds(item, artwork, target);
+                record.note(&out.as_bytes()[start..], bounds, artwork.decimals);
+            }
         }
         if grouped {
             let _ = write!(out, "{newline}</{prefix}g>");
@@ -244,9 +255,29 @@ fn sublayer(sink: &mut Sink, group: &Group, artwork: &Artwork, target: &Target) 
         sink.flush_some();
     }
     if let Some(stream) = &group.stream {
-        stream::write_stream(sink, stream.as_ref(), &id, artwork.decimals, target);
+        stream::write_stream(sink, stream.as_ref(), (&id, artwork.decimals), target, record);
     }
     let _ = write!(sink.text, "{newline}</{prefix}g>");
+}
+
+/// The box of a piece, in the layer's coordinates.
+fn bounds(item: &Item, artwork: &Artwork, target: &Target) -> Rect {
+    let of = |parts: &mut dyn Iterator<Item = &Part>, pose: Affine| {
+        let mut boxes =
+            parts.map(|part| (pose * part.transform).transform_rect_bbox(part.path.control_box()));
+        let first = boxes.next();
+        first.map(|first| boxes.fold(first, |all, one| all.union(one)))
+    };
+    let found = match item.clone {
+        None => of(&mut item.parts.iter(), target.inverse),
+        Some((symbol, pose)) => {
+            let pose = target.inverse * pose;
+            // What it draws may be another symbol, or an object of the drawing: then its origin stands for it.
+            let origin = || Rect::from_center_size(pose.translation().to_point(), (0.0, 0.0));
+            of(&mut artwork.symbols[symbol].parts(), pose).or_else(|| Some(origin()))
+        }
+    };
+    found.unwrap_or(Rect::ZERO)
 }
 
 fn write_item(out: &mut String, item: &Item, id: &str, artwork: &Artwork, target: &Target) {

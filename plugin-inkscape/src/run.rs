@@ -63,9 +63,21 @@ pub fn generate(job: Job) -> Result<Done, Error> {
     let mut scene = document.scene(&selection)?;
     add_rules(&mut scene, job.generator, &job.values)?;
     job.progress.limit(job.time_limit);
-    let artwork =
+    let mut artwork =
         rinceau::generate(job.generator, &job.values, &scene, job.seed, job.progress.as_progress())?;
     let sources = job.generator.sources(&scene);
+    let ids: Vec<String> = sources.iter().map(|source| source.id.clone()).collect();
+    if let Some(held) = document.held(job.generator.name, &ids)? {
+        // An ornament that has not changed stays the same around what the artist moved.
+        if !document.is_made_of(&artwork, job.generator.name, &ids)? {
+            let mut scene = held.document.scene(&selection)?;
+            add_rules(&mut scene, job.generator, &job.values)?;
+            job.progress.limit(job.time_limit);
+            let progress = job.progress.as_progress();
+            artwork = rinceau::generate(job.generator, &job.values, &scene, job.seed, progress)?;
+            held.take_out_of(&mut artwork);
+        }
+    }
     let is_source = |id: &&String| sources.iter().any(|source| source.id == **id);
     let with = selection.ids.iter().filter(|id| !is_source(id)).cloned().collect();
     let labels: Vec<&str> = sources.iter().map(|source| source.label.as_str()).collect();
@@ -73,7 +85,7 @@ pub fn generate(job: Job) -> Result<Done, Error> {
         generator: job.generator.name.to_owned(),
         params: job.values.recipe(job.generator.table),
         seed: job.seed,
-        sources: sources.iter().map(|source| source.id.clone()).collect(),
+        sources: ids,
         with,
         label: format!("Ornament - {}", labels.join(", ")),
     };

@@ -6,6 +6,7 @@
 
 mod support;
 
+use rinceau_format::Role;
 use roxmltree::Node;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -348,6 +349,107 @@ fn marks_are_set_changed_and_cleared() {
     let other = by_id(&xml, "other");
     assert_eq!(other.attribute((RINCEAU, "role")), None);
     assert_eq!(other.attribute("class").unwrap_or_default(), "");
+}
+
+/// An artist paints a leaf, moves one, deletes one and reshapes the ornament in Inkscape itself, saves,
+/// opens the drawing again and updates: all of that is there. Undo takes the whole update back.
+#[test]
+fn an_update_keeps_what_was_done_by_hand() {
+    let user = User::new();
+    let plain = svg("<path id=\"leaf\" d=\"M 20,20 H 180 V 180 H 20 Z\" style=\"fill:#e8e0c8\"/>");
+    let once = user.edit(&plain, "select-by-id:leaf;org.rinceau.pack.noprefs");
+    let piece = |number: usize| format!("ornament-leaf-elements-{number}");
+    let by_hand = format!(
+        "select-by-id:{};object-set-property:fill,#ff0000;select-clear;select-by-id:{};transform-translate:200,10;select-clear;select-by-id:{};delete-selection;select-clear;select-by-id:leaf;object-set-attribute:d,M 20 20 H 180 V 150 H 20 Z;select-clear",
+        piece(3),
+        piece(5),
+        piece(7)
+    );
+    let edited = user.edit(&once, &by_hand);
+    let updated = user.edit(&edited, "org.rinceau.update.noprefs");
+    let (before, after) = (parse(&edited), parse(&updated));
+    assert_eq!(by_id(&after, "leaf").attribute("d"), Some("M 20 20 H 180 V 150 H 20 Z"));
+    let style = |id: &str| by_id(&after, id).attribute("style").unwrap_or_default().to_owned();
+    let painted = by_id(&after, &piece(3));
+    let is_red =
+        painted.descendants().any(|node| node.attribute("style").is_some_and(|s| s.contains("#ff0000")));
+    assert!(is_red, "{}", style(&piece(3)));
+    for name in ["d", "transform", "style"] {
+        assert_eq!(by_id(&after, &piece(5)).attribute(name), by_id(&before, &piece(5)).attribute(name));
+    }
+    assert!(!after.descendants().any(|node| node.attribute("id") == Some(&piece(7))));
+    // Something else was made again.
+    let differs = (1..30).filter(|&n| {
+        let d = |xml: &roxmltree::Document| {
+            let node = xml.descendants().find(|node| node.attribute("id") == Some(&piece(n)))?;
+            node.descendants().find_map(|node| node.attribute("d")).map(str::to_owned)
+        };
+        d(&before) != d(&after)
+    });
+    assert!(differs.count() > 5);
+    let undone = user.edit(&edited, "org.rinceau.update.noprefs;undo");
+    assert_eq!(without_inkscape(&undone), without_inkscape(&edited), "one step of undo takes an update back");
+}
+
+/// Ids, geometry and paint of everything, in order.
+fn without_inkscape(text: &str) -> Vec<String> {
+    let xml = parse(text);
+    let of = |node: Node| {
+        let get = |name: &str| node.attribute(name).unwrap_or_default().to_owned();
+        format!("{} {} {} {}", node.tag_name().name(), get("id"), get("d"), get("style"))
+    };
+    xml.descendants().filter(|node| node.has_attribute("d")).map(of).collect()
+}
+
+/// Every entry of the menu, each on something that suits it, in one session.
+#[test]
+fn every_entry_of_the_menu_runs() {
+    let user = User::new();
+    let roles = Role::ALL.map(|role| role.name()).into_iter().filter(|name| *name != "rules");
+    let objects: String = roles
+        .clone()
+        .enumerate()
+        .map(|(i, role)| format!("<g id=\"as-{role}\"><path d=\"M {0},300 h 8\"/></g>\n", 12 * i))
+        .collect();
+    let stones: String = (0..25)
+        .map(|i| format!("<circle cx=\"{}\" cy=\"{}\" r=\"4\"/>", 220 + 12 * (i % 5), 20 + 12 * (i / 5)))
+        .collect();
+    let drawing = svg(&format!(
+        "<rect id=\"a\" x=\"0\" y=\"0\" width=\"90\" height=\"90\"/><rect id=\"b\" x=\"100\" y=\"0\" width=\"90\" height=\"90\"/><rect id=\"c\" x=\"0\" y=\"100\" width=\"90\" height=\"90\"/>\n<g id=\"example\">{stones}</g><g id=\"tree\"><path id=\"trunk\" d=\"M150,190 V150\" stroke=\"#000000\"/><use id=\"branch\" href=\"#trunk\" transform=\"translate(150 150) rotate(30) scale(.7) translate(-150 -190)\"/></g>\n{objects}"
+    ));
+    let on = |ids: &str, entry: &str| format!("select-clear;select-by-id:{ids};org.rinceau.{entry}.noprefs;");
+    let mut actions = String::new();
+    for role in roles.clone() {
+        actions += &on(&format!("as-{role}"), &format!("mark-{role}"));
+    }
+    let after_marks = user.edit(&drawing, actions.trim_end_matches(';'));
+    let xml = parse(&after_marks);
+    for role in roles.clone() {
+        let found = by_id(&xml, &format!("as-{role}")).attribute((RINCEAU, "role")).map(str::to_owned);
+        assert_eq!(found.as_deref(), Some(role));
+    }
+    // Cleared again, so that they are in nobody's way.
+    let all: Vec<String> = roles.map(|role| format!("as-{role}")).collect();
+    let mut actions = on(&all.join(","), "mark-none");
+    actions += &on("a", "pack");
+    actions += &on("b", "vine");
+    actions += &on("c", "grow");
+    actions += &on("tree", "recurse");
+    actions += &on("example", "mark-reference");
+    actions += "select-clear;org.rinceau.connect.noprefs;";
+    actions += &on("a", "arrange");
+    for tack in ["drag", "half-turn", "mirror", "mirror-across", "identity"] {
+        actions += &on("branch", &format!("tack-{tack}"));
+    }
+    actions += "select-clear;org.rinceau.update.noprefs";
+    let after = user.edit(&after_marks, &actions);
+    let xml = parse(&after);
+    let made: Vec<&str> =
+        layers(&xml).iter().filter_map(|layer| layer.attribute((RINCEAU, "result"))).collect();
+    for generator in ["pack", "vine", "grow", "recurse", "connect", "arrange"] {
+        assert!(made.contains(&generator), "{generator} is not in {made:?}");
+    }
+    assert!(all.iter().all(|id| by_id(&xml, id).attribute((RINCEAU, "role")).is_none()));
 }
 
 /// A refusal opens a dialog, which Escape closes; the drawing is the one that was opened.

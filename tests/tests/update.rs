@@ -77,3 +77,178 @@ fn leaves_what_it_cannot_make_again() {
     assert!(bare.code == Some(1) && bare.stdout.is_empty());
     insta::assert_snapshot!(bare.stderr.trim_end(), @"rinceau: The drawing has no ornament that could be made again. Run one of the generators first. [nothing-to-update]");
 }
+
+/// Generators, what they are given, and a change of the shape that they fill.
+const KEPT: [(&str, &[&str], (&str, &str)); 5] = [
+    ("pack", &["--id", "pond"], ("H 260", "H 230")),
+    ("vine", &["--id", "pond"], ("H 260", "H 230")),
+    ("grow", &["--id", "pond", "--rules", "dots"], ("H 260", "H 230")),
+    ("arrange", &["--id", "pond"], ("H 260", "H 230")),
+    ("recurse", &["--id", "tree", "--depth", "5"], ("V150", "V145")),
+];
+
+fn drawing() -> String {
+    let dots: String = (0..25)
+        .map(|i| {
+            let (x, y) = (300 + 12 * (i % 5), 20 + 12 * (i / 5));
+            format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"4\"/>")
+        })
+        .collect();
+    svg(&format!(
+        "<path id=\"pond\" d=\"M20,20 H 260 V140 H20 Z\" fill=\"#eeeeee\"/>\n<g id=\"example\" class=\"rinceau-reference\">{dots}</g>\n<g id=\"tree\"><path id=\"trunk\" d=\"M150,190 V150\" stroke=\"#000000\"/><use href=\"#trunk\" transform=\"translate(150 150) rotate(30) scale(.7) translate(-150 -190)\"/><use href=\"#trunk\" transform=\"translate(150 150) rotate(-40) scale(.6) translate(-150 -190)\"/></g>"
+    ))
+}
+
+/// Ids of the pieces of a drawing's first layer, those of its first sublayer with some.
+fn pieces(text: &str) -> Vec<String> {
+    let xml = parse(text);
+    let layer = layers(&xml)[0];
+    let of = |node: roxmltree::Node| -> Vec<String> {
+        let all = node.descendants().filter(|node| node.has_attribute((RINCEAU, "of")));
+        all.map(|node| node.attribute("id").unwrap().to_owned()).collect()
+    };
+    layer.children().map(of).find(|ids| ids.len() > 3).unwrap()
+}
+
+/// The start tag of the object with an id.
+fn tag(text: &str, id: &str) -> String {
+    let xml = parse(text);
+    let node = by_id(&xml, id);
+    let element = &text[node.range()];
+    element[..element.find('>').unwrap()].trim_end_matches('/').to_owned()
+}
+
+/// What an artist can do to a piece: (paint it, take it away, move it, lock it), and draw something.
+fn edited(text: &str, painted: &str, gone: &str, moved: &str, locked: &str) -> String {
+    let set = |text: String, id: &str, name: &str, value: &str| {
+        let old = tag(&text, id);
+        let new = match old.find(&format!(" {name}=\"")) {
+            Some(at) => {
+                let start = at + name.len() + 3;
+                let end = start + old[start..].find('"').unwrap();
+                format!("{}{value}{}", &old[..start], &old[end..])
+            }
+            None => format!("{old} {name}=\"{value}\""),
+        };
+        text.replace(&old, &new)
+    };
+    let text = set(text.to_owned(), painted, "style", "fill:#ff0000;stroke:#00ff00");
+    let text = set(text, moved, "transform", "translate(3 5)");
+    let text = set(text, locked, "sodipodi:insensitive", "true");
+    let range = {
+        let xml = parse(&text);
+        by_id(&xml, gone).range()
+    };
+    let start = text[..range.start].trim_end_matches('\n').len();
+    let text = format!("{}{}", &text[..start], &text[range.end..]);
+    // The last line of the layer is its record, so what is drawn goes before it.
+    let record = text.find("\n<metadata").unwrap();
+    format!("{}\n<path id=\"mine\" d=\"M1,1H5\"/>{}", &text[..record], &text[record..])
+}
+
+/// Everything that an artist did to pieces is there after an update, byte for byte, in every generator.
+#[test]
+fn keeps_what_was_done_to_pieces() {
+    for (name, arguments, _) in KEPT {
+        let mut all = vec![name];
+        all.extend(arguments);
+        let made = run(&all, &drawing());
+        let ids = pieces(&made);
+        let mine = edited(&made, &ids[0], &ids[1], &ids[2], &ids[3]);
+        let updated = run(&["update"], &mine);
+        let lines = |text: &str| text.lines().map(str::to_owned).collect::<std::collections::BTreeSet<_>>();
+        let (before, after) = (lines(&mine), lines(&updated));
+        let differing: Vec<&String> = before.symmetric_difference(&after).collect();
+        assert!(differing.is_empty(), "{name}: {differing:.300?}");
+        assert!(run(&["update"], &updated) == updated, "{name}");
+    }
+}
+
+/// The same where the shape changes: pieces that were moved and locked stand where they stood, the
+/// colour is there, as many as were deleted are missing, and all ids are there once.
+#[test]
+fn keeps_what_was_done_to_pieces_in_other_shapes() {
+    for (name, arguments, (from, to)) in KEPT {
+        let mut all = vec![name];
+        all.extend(arguments);
+        let made = run(&all, &drawing());
+        let ids = pieces(&made);
+        let mine = edited(&made, &ids[0], &ids[1], &ids[2], &ids[3]);
+        let updated = run(&["update"], &changed(&mine, from, to));
+        assert!(updated != mine, "{name}");
+        let tags = |id: &str| (tag(&mine, id), tag(&updated, id));
+        for kept in [&ids[2], &ids[3], "mine"] {
+            let (before, after) = tags(kept);
+            assert_eq!(before, after, "{name}");
+        }
+        assert!(tag(&updated, &ids[0]).contains("fill:#ff0000;stroke:#00ff00"), "{name}");
+        let xml = parse(&updated);
+        let found = |id: &str| xml.descendants().filter(|node| node.attribute("id") == Some(id)).count();
+        assert_eq!(found(&ids[1]), 0, "{name}");
+        let mut all: Vec<&str> = xml.descendants().filter_map(|node| node.attribute("id")).collect();
+        let count = all.len();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), count, "{name}");
+        assert!(run(&["update"], &updated) == updated, "{name}");
+    }
+}
+
+/// New pieces keep clear of one that was moved into their midst.
+#[test]
+fn keeps_clear_of_what_was_moved() {
+    let made = run(&["pack", "--id", "pond"], &drawing());
+    let ids = pieces(&made);
+    let old = tag(&made, &ids[2]);
+    let moved = made.replace(&old, &format!("{old} transform=\"translate(40 30)\""));
+    let updated = run(&["update"], &changed(&moved, "H 260", "H 230"));
+    assert_eq!(tag(&updated, &ids[2]), tag(&moved, &ids[2]));
+    assert!(!updated.contains("-fixed\""), "it is no fixed object of the result");
+    let (_, scene) = support::geometry::read(updated.into_bytes());
+    assert_eq!(scene.fixed.len(), 0);
+}
+
+/// Sublayers that were hidden, locked or deleted stay so; a group of pieces stays a group.
+#[test]
+fn keeps_sublayers_and_groups() {
+    let made = run(&["pack", "--id", "pond"], &drawing());
+    let xml = parse(&made);
+    let layer = layers(&xml)[0].attribute("id").unwrap();
+    let (fillers, spines) = (format!("{layer}-fillers"), format!("{layer}-spines"));
+    let shown =
+        made.replace("style=\"display:none\"", "style=\"display:inline\" sodipodi:insensitive=\"true\"");
+    let range = by_id(&xml, &fillers).range();
+    let cut = shown.replace(&made[range], "");
+    let ids = pieces(&made);
+    let pair = by_id(&xml, &ids[4]).range().start..by_id(&xml, &ids[5]).range().end;
+    let pair = &made[pair];
+    let mine = cut.replace(pair, &format!("<g id=\"pair\" transform=\"scale(1.01)\">{pair}</g>"));
+    let updated = run(&["update"], &changed(&mine, "H 260", "H 230"));
+    let xml = parse(&updated);
+    assert!(tag(&updated, &spines).contains("display:inline\" sodipodi:insensitive=\"true\""));
+    assert!(!xml.descendants().any(|node| node.attribute("id") == Some(&fillers)));
+    assert!(updated.contains(&format!("<g id=\"pair\" transform=\"scale(1.01)\">{pair}</g>")));
+    assert!(run(&["update"], &updated) == updated);
+}
+
+/// Whoever moves the whole ornament has moved no piece of it; whoever empties the layer wants it new.
+#[test]
+fn tells_a_moved_ornament_from_moved_pieces() {
+    let made = run(&["pack", "--id", "pond"], &drawing());
+    let mut moved = made.clone();
+    for id in pieces(&made) {
+        let old = tag(&moved, &id);
+        moved = moved.replace(&old, &format!("{old} transform=\"translate(2 0)\""));
+    }
+    assert!(run(&["update"], &moved) == made);
+    let xml = parse(&made);
+    let layer = layers(&xml)[0].attribute("id").unwrap();
+    let range = by_id(&xml, &format!("{layer}-elements")).range();
+    let others = ["fillers", "spines"].map(|name| by_id(&xml, &format!("{layer}-{name}")).range());
+    let mut emptied = made.clone();
+    for range in [others[1].clone(), others[0].clone(), range] {
+        emptied.replace_range(range, "");
+    }
+    let tag = |text: &str| text.matches("rinceau:of").count();
+    assert_eq!(tag(&run(&["update"], &emptied)), tag(&made));
+}

@@ -1,7 +1,7 @@
 //! Drawings to hand on: without marks and recipes, or as nothing but paths.
 
 use super::Document;
-use super::edit::{splice, start_tag_end};
+use super::edit::{splice, start_tag_end, tag_name};
 use crate::error::Error;
 use crate::look::ARROW;
 use crate::number::{decimals_for, path_data};
@@ -28,8 +28,7 @@ impl Document {
             let kept = referred_to(root, &removed);
             let mut edits: Vec<(Range<usize>, String)> = Vec::new();
             let root_tag = &self.text[root.range()];
-            let name = root_tag[1..].split(|c: char| c.is_whitespace() || c == '>' || c == '/').next();
-            let p = name.and_then(|name| name.strip_suffix("svg")).unwrap_or("");
+            let p = tag_name(root_tag).strip_suffix("svg").unwrap_or("");
             let mut gone: Range<usize> = 0..0;
             for node in root.descendants().filter(Node::is_element) {
                 let range = node.range();
@@ -100,8 +99,7 @@ impl Document {
             if closes {
                 return Ok((head, None));
             }
-            let name = element[1..].split(|c: char| c.is_whitespace() || c == '>').next().unwrap_or("svg");
-            let p = name.strip_suffix("svg").unwrap_or("");
+            let p = tag_name(element).strip_suffix("svg").unwrap_or("");
             let (start, end) = (range.start + tag_end + 1, range.start + element.rfind("</").unwrap_or(0));
             let group = format!("<{p}g class=\"{}\">", Role::Fixed.class());
             let edits = vec![(start..start, group), (end..end, format!("</{p}g>"))];
@@ -199,6 +197,7 @@ fn removed(root: Node) -> HashSet<usize> {
         let is_mark = !result.contains(&range.start) && has_mark(node) && has_role(node);
         let is_ours = node.tag_name().namespace() == Some(NAMESPACE)
             || node.attribute((NAMESPACE, "history")).is_some()
+            || node.has_attribute((NAMESPACE, "pieces"))
             || node.plain("id") == Some(ARROW)
             || is_arrows(node);
         if is_mark || is_ours || result.contains(&range.start) && is_hidden() {

@@ -71,6 +71,14 @@ pub(super) fn start_tag_end(element: &str) -> (usize, bool) {
     (bytes.len(), false)
 }
 
+/// The name of an element with its prefix, from its text.
+pub(super) fn tag_name(element: &str) -> &str {
+    let name = element
+        .get(1..)
+        .and_then(|rest| rest.split(|c: char| c.is_whitespace() || c == '>' || c == '/').next());
+    name.unwrap_or("")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

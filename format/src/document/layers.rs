@@ -1,7 +1,8 @@
 //! Result layers: find, replace, add and remove them.
 
 use super::Document;
-use super::edit::{New, splice, splice_to, start_tag_end};
+use super::edit::{New, splice, splice_to, start_tag_end, tag_name};
+use super::keep::{Edits, merged};
 use crate::artwork::Artwork;
 use crate::encoding::Encoding;
 use crate::error::Error;
@@ -109,48 +110,70 @@ impl Document {
     fn put_layer(&self, artwork: &Artwork, recipe: &Recipe, sink: &mut Sink) -> Result<(), Error> {
         self.parse(|xml| {
             let survey = Survey::of(xml, &recipe.label);
-            let mut mine = None;
-            // Layers whose sources are all filled again, with others.
-            let mut covered: Vec<Node> = Vec::new();
-            let sources: HashSet<&String> = recipe.sources.iter().collect();
-            for &node in &survey.results {
-                let old = read_recipe(self, node)?;
-                if old.generator != recipe.generator {
-                    continue;
-                }
-                if old.sources == recipe.sources {
-                    mine = mine.or(Some(node));
-                } else if !old.sources.is_empty() && old.sources.iter().all(|id| sources.contains(id)) {
-                    covered.push(node);
-                } else if let Some(shared) = old.sources.iter().find(|id| sources.contains(id)) {
-                    let sentence = format!(
-                        "'{shared}' is already filled, together with others, in the layer '{}'",
-                        label_of(node)
-                    );
-                    return Err(Error::new(
-                        "layer-overlap",
-                        sentence,
-                        "Fill all of that layer's shapes at once, or delete the layer first",
-                    )
-                    .at(self.position(node)));
-                }
-            }
-            if let [one] = covered[..] {
-                mine = mine.or(Some(one));
-            }
-            if let Some(other) = covered.into_iter().find(|&node| Some(node) != mine) {
-                return Err(Error::new(
-                    "layer-overlap",
-                    format!("The layer '{}' already fills some of the shapes alone", label_of(other)),
-                    "Fill its shapes and the others separately (select them), or delete the layer first",
-                )
-                .at(self.position(other)));
-            }
+            let mine = self.own_layer(&survey.results, &recipe.generator, &recipe.sources)?;
             match mine {
                 Some(node) => self.replaced(xml, node, (artwork, recipe), &survey.ids, sink),
                 None => self.appended(xml, (artwork, recipe), &survey, sink),
             }
         })
+    }
+
+    /// The layer that a generator makes again for some sources, if there is one.
+    ///
+    /// Errors: as [`Document::with_layer`].
+    pub(super) fn layer_of<'a, 'i>(
+        &self,
+        xml: &'a roxmltree::Document<'i>,
+        generator: &str,
+        sources: &[String],
+    ) -> Result<Option<Node<'a, 'i>>, Error> {
+        self.own_layer(&result_nodes(xml), generator, sources)
+    }
+
+    fn own_layer<'a, 'i>(
+        &self,
+        results: &[Node<'a, 'i>],
+        generator: &str,
+        sources: &[String],
+    ) -> Result<Option<Node<'a, 'i>>, Error> {
+        let mut mine = None;
+        // Layers whose sources are all filled again, with others.
+        let mut covered: Vec<Node> = Vec::new();
+        let wanted: HashSet<&String> = sources.iter().collect();
+        for &node in results {
+            let old = read_recipe(self, node)?;
+            if old.generator != generator {
+                continue;
+            }
+            if old.sources == sources {
+                mine = mine.or(Some(node));
+            } else if !old.sources.is_empty() && old.sources.iter().all(|id| wanted.contains(id)) {
+                covered.push(node);
+            } else if let Some(shared) = old.sources.iter().find(|id| wanted.contains(id)) {
+                let sentence = format!(
+                    "'{shared}' is already filled, together with others, in the layer '{}'",
+                    label_of(node)
+                );
+                return Err(Error::new(
+                    "layer-overlap",
+                    sentence,
+                    "Fill all of that layer's shapes at once, or delete the layer first",
+                )
+                .at(self.position(node)));
+            }
+        }
+        if let [one] = covered[..] {
+            mine = mine.or(Some(one));
+        }
+        if let Some(other) = covered.into_iter().find(|&node| Some(node) != mine) {
+            return Err(Error::new(
+                "layer-overlap",
+                format!("The layer '{}' already fills some of the shapes alone", label_of(other)),
+                "Fill its shapes and the others separately (select them), or delete the layer first",
+            )
+            .at(self.position(other)));
+        }
+        Ok(mine)
     }
 
     fn replaced(
@@ -161,6 +184,48 @@ impl Document {
         ids: &Ids,
         sink: &mut Sink,
     ) -> Result<(), Error> {
+        let id = node.plain("id").map_or_else(|| ids.free(), str::to_owned);
+        self.into_layer(xml, node, &id, |target| {
+            let range = node.range();
+            let element = &self.text[range.clone()];
+            let (tag_end, closes) = start_tag_end(element);
+            let mut edits = Vec::new();
+            let missing = self.recipe_edits(node, recipe, &mut edits)?;
+            let tag = range.start + tag_end;
+            let mut edits: Vec<_> = edits.into_iter().map(|(range, text)| (range, New::Text(text))).collect();
+            if closes {
+                let end = format!("</{}g>", target.svg_prefix);
+                edits.push((tag..range.end, New::Layer(format!("{missing}>"), end)));
+            } else {
+                let close = range.start + element.rfind("</").unwrap_or(element.len());
+                if !missing.is_empty() {
+                    edits.push((tag..tag, New::Text(missing)));
+                }
+                edits.push((tag + 1..close, New::Layer(String::new(), String::new())));
+            }
+            let changes = Edits::of(node);
+            if changes.is_empty() {
+                splice_to(&self.text, edits, sink, |sink| write::content(sink, artwork, target));
+                return Ok(());
+            }
+            let mut fresh = Sink::default();
+            write::content(&mut fresh, artwork, target);
+            let content = merged(self, &changes, (&fresh.text, target.svg_prefix, artwork.decimals))?;
+            splice_to(&self.text, edits, sink, |sink| sink.put_text(&content));
+            Ok(())
+        })
+    }
+
+    /// Does something with what is written into a layer that exists.
+    ///
+    /// Errors: a layer with a transform that cannot be inverted.
+    pub(super) fn into_layer<T>(
+        &self,
+        xml: &roxmltree::Document,
+        node: Node,
+        id: &str,
+        f: impl FnOnce(&Target) -> Result<T, Error>,
+    ) -> Result<T, Error> {
         self.check_verbatim(node)?;
         let resolver = Resolver::new(xml, &self.limits)?;
         let guard = resolver.cascade.guard();
@@ -174,41 +239,15 @@ impl Document {
             )
             .at(self.position(node)));
         }
-        let range = node.range();
-        let element = &self.text[range.clone()];
-        let (tag_end, closes) = start_tag_end(element);
-        let tag_name = element[1..]
-            .split(|c: char| c.is_whitespace() || c == '>' || c == '/')
-            .next()
-            .unwrap_or("g")
-            .to_owned();
-        let id = node.plain("id").map_or_else(|| ids.free(), str::to_owned);
-        let newline = self.newline();
-        let target = Target {
-            id: &id,
-            svg_prefix: tag_name.strip_suffix('g').unwrap_or(""),
+        f(&Target {
+            id,
+            svg_prefix: tag_name(&self.text[node.range()]).strip_suffix('g').unwrap_or(""),
             has_namespace: node.tag_name().namespace() == Some(SVG),
             inverse,
             in_empty_root: false,
-            newline,
+            newline: self.newline(),
             guard: &guard,
-        };
-
-        let mut edits = Vec::new();
-        let missing = self.recipe_edits(node, recipe, &mut edits)?;
-        let tag = range.start + tag_end;
-        let mut edits: Vec<_> = edits.into_iter().map(|(range, text)| (range, New::Text(text))).collect();
-        if closes {
-            edits.push((tag..range.end, New::Layer(format!("{missing}>"), format!("</{tag_name}>"))));
-        } else {
-            let close = range.start + element.rfind("</").unwrap_or(element.len());
-            if !missing.is_empty() {
-                edits.push((tag..tag, New::Text(missing)));
-            }
-            edits.push((tag + 1..close, New::Layer(String::new(), String::new())));
-        }
-        splice_to(&self.text, edits, sink, |sink| write::content(sink, artwork, &target));
-        Ok(())
+        })
     }
 
     /// Edits that renew a layer's recipe; returns what its tag still lacks.
@@ -295,11 +334,7 @@ impl Document {
 
     /// The prefix of SVG elements at the root, with its colon.
     pub(super) fn prefix_of(&self, root: Node) -> &str {
-        let name = self.text[root.range().start + 1..]
-            .split(|c: char| c.is_whitespace() || c == '>' || c == '/')
-            .next()
-            .unwrap_or("svg");
-        name.strip_suffix("svg").unwrap_or("")
+        tag_name(&self.text[root.range()]).strip_suffix("svg").unwrap_or("")
     }
 
     /// The drawing's own line end.

@@ -1,7 +1,7 @@
 //! Marking objects with roles, and clearing the marks.
 
 use super::Document;
-use super::edit::{splice, start_tag_end};
+use super::edit::{splice, start_tag_end, tag_name};
 use crate::error::Error;
 use crate::look::{self, ARROW, appearance};
 use crate::read::{Resolver, unknown_id};
@@ -127,8 +127,7 @@ impl Document {
         let range = root.range();
         let element = &self.text[range.clone()];
         let (_, closes) = start_tag_end(element);
-        let name = element[1..].split(|c: char| c.is_whitespace() || c == '>').next().unwrap_or("svg");
-        let p = name.strip_suffix("svg").unwrap_or("");
+        let p = tag_name(element).strip_suffix("svg").unwrap_or("");
         let at = range.start + element.rfind("</").unwrap_or(element.len());
         let newline = self.newline();
         let marker = format!("{newline}{}", look::arrow(p));
