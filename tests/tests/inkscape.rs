@@ -65,6 +65,24 @@ impl User {
         std::fs::read_to_string(&output)
             .unwrap_or_else(|error| panic!("Inkscape wrote nothing ({error}): {}", done.stderr))
     }
+
+    /// The same where actions open dialogs with a message, which Escape closes.
+    fn edit_with_dialogs(&self, drawing: &str, actions: &str) -> String {
+        let input = file(&self.home, "in.svg", drawing);
+        let output = self.home.path().join("out.svg");
+        let _ = std::fs::remove_file(&output);
+        // The dialog takes the keys of the window that it belongs to.
+        let script = "inkscape --with-gui --batch-process --actions=\"$1\" \"$2\" & \
+            for i in $(seq 120); do sleep 0.5; kill -0 $! 2>/dev/null || break; \
+            xdotool search --onlyvisible --name Inkscape windowfocus key Escape >/dev/null 2>&1 || true; done; \
+            kill $! 2>/dev/null; wait";
+        let mut session = Command::new("xvfb-run");
+        session.args(["-a", "bash", "-c", script, "bash"]);
+        session.arg(format!("{actions};export-filename:{};export-do", output.display())).arg(&input);
+        self.at_home(&mut session);
+        let done = Run::of(session).limit(Duration::from_secs(90)).done();
+        std::fs::read_to_string(&output).unwrap_or_else(|error| panic!("{error}: {done:?}"))
+    }
 }
 
 /// The drawing apart from our layers: names, ids, geometry and transforms, in order. Inkscape
@@ -415,7 +433,7 @@ fn every_entry_of_the_menu_runs() {
         .map(|i| format!("<circle cx=\"{}\" cy=\"{}\" r=\"4\"/>", 220 + 12 * (i % 5), 20 + 12 * (i / 5)))
         .collect();
     let drawing = svg(&format!(
-        "<rect id=\"a\" x=\"0\" y=\"0\" width=\"90\" height=\"90\"/><rect id=\"b\" x=\"100\" y=\"0\" width=\"90\" height=\"90\"/><rect id=\"c\" x=\"0\" y=\"100\" width=\"90\" height=\"90\"/>\n<g id=\"example\">{stones}</g><g id=\"tree\"><path id=\"trunk\" d=\"M150,190 V150\" stroke=\"#000000\"/><use id=\"branch\" href=\"#trunk\" transform=\"translate(150 150) rotate(30) scale(.7) translate(-150 -190)\"/></g>\n{objects}"
+        "<rect id=\"a\" x=\"0\" y=\"0\" width=\"90\" height=\"90\"/><rect id=\"b\" x=\"100\" y=\"0\" width=\"90\" height=\"90\"/><rect id=\"c\" x=\"0\" y=\"100\" width=\"90\" height=\"90\"/>\n<g id=\"example\">{stones}</g><g id=\"tree\"><path id=\"trunk\" d=\"M150,190 V150\" stroke=\"#000000\"/><use id=\"branch\" href=\"#trunk\" transform=\"translate(150 150) rotate(30) scale(.7) translate(-150 -190)\"/></g>\n<path id=\"way\" d=\"M180,150 L186,140\"/><circle id=\"here\" cx=\"150\" cy=\"150\" r=\"1\"/><circle id=\"there\" cx=\"160\" cy=\"120\" r=\"1\"/>\n{objects}"
     ));
     let on = |ids: &str, entry: &str| format!("select-clear;select-by-id:{ids};org.rinceau.{entry}.noprefs;");
     let mut actions = String::new();
@@ -431,16 +449,20 @@ fn every_entry_of_the_menu_runs() {
     // Cleared again, so that they are in nobody's way.
     let all: Vec<String> = roles.map(|role| format!("as-{role}")).collect();
     let mut actions = on(&all.join(","), "mark-none");
-    actions += &on("a", "pack");
-    actions += &on("b", "vine");
-    actions += &on("c", "grow");
-    actions += &on("tree", "recurse");
+    actions += &on("way", "mark-guide");
+    actions += &on("here,there", "mark-tack");
+    actions += &on("branch,here,way", "tack-drag");
+    for tack in ["half-turn", "mirror", "mirror-across", "identity"] {
+        actions += &on("branch,here,there", &format!("tack-{tack}"));
+    }
+    actions += &on("way,here,there", "mark-none");
     actions += &on("example", "mark-reference");
     actions += "select-clear;org.rinceau.connect.noprefs;";
     actions += &on("a", "arrange");
-    for tack in ["drag", "half-turn", "mirror", "mirror-across", "identity"] {
-        actions += &on("branch", &format!("tack-{tack}"));
-    }
+    actions += &on("tree", "recurse");
+    actions += &on("b", "vine");
+    actions += &on("a", "pack");
+    actions += &on("c", "grow");
     actions += "select-clear;org.rinceau.update.noprefs";
     let after = user.edit(&after_marks, &actions);
     let xml = parse(&after);
@@ -450,6 +472,17 @@ fn every_entry_of_the_menu_runs() {
         assert!(made.contains(&generator), "{generator} is not in {made:?}");
     }
     assert!(all.iter().all(|id| by_id(&xml, id).attribute((RINCEAU, "role")).is_none()));
+    assert_ne!(
+        by_id(&xml, "branch").attribute("transform"),
+        by_id(&parse(&drawing), "branch").attribute("transform")
+    );
+    // These say what they find in a dialog, and change nothing.
+    let told = user.edit_with_dialogs(&after, "org.rinceau.check.noprefs;org.rinceau.diagnostics.noprefs");
+    assert_eq!(rest(&told), rest(&after));
+    // A form that was explored is taken up again.
+    let explored = rinceau(["recurse", "--id", "tree", "--history", "true"]).input(drawing).succeed();
+    let resumed = user.edit(explored.text(), "select-by-id:step-1;org.rinceau.resume.noprefs");
+    assert!(resumed.contains("form-of-step-1"));
 }
 
 /// A refusal opens a dialog, which Escape closes; the drawing is the one that was opened.
@@ -457,21 +490,7 @@ fn every_entry_of_the_menu_runs() {
 fn a_refusal_leaves_the_drawing_as_it_was() {
     let user = User::new();
     let bow_tie = svg("<path id=\"tie\" class=\"rinceau-container\" d=\"M 10,10 190,190 V 10 L 10,190 Z\"/>");
-    let input = file(&user.home, "in.svg", &bow_tie);
-    let output = user.home.path().join("out.svg");
-    // The dialog takes the keys of the window that it belongs to.
-    let script = "inkscape --with-gui --batch-process --actions=\"$1\" \"$2\" & \
-        for i in $(seq 120); do sleep 0.5; kill -0 $! 2>/dev/null || break; \
-        xdotool search --onlyvisible --name Inkscape windowfocus key Escape >/dev/null 2>&1 || true; done; \
-        kill $! 2>/dev/null; wait";
-    let mut session = Command::new("xvfb-run");
-    session.args(["-a", "bash", "-c", script, "bash"]);
-    session
-        .arg(format!("org.rinceau.pack.noprefs;export-filename:{};export-do", output.display()))
-        .arg(&input);
-    user.at_home(&mut session);
-    let done = Run::of(session).limit(Duration::from_secs(90)).done();
-    let after = std::fs::read_to_string(&output).unwrap_or_else(|error| panic!("{error}: {done:?}"));
+    let after = user.edit_with_dialogs(&bow_tie, "org.rinceau.pack.noprefs");
     assert_eq!(rest(&after), rest(&bow_tie));
     assert!(layers(&parse(&after)).is_empty());
 }
