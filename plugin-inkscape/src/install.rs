@@ -33,7 +33,9 @@ pub fn install(dir: Option<&Path>) -> Result<(), Error> {
     for (name, content) in inx::all(PROGRAM) {
         output::write(Some(&folder.join(name)), content.as_bytes())?;
     }
-    output::write(Some(&folder.join(inx::PATTERNS.0)), inx::PATTERNS.1)?;
+    for picture in &inx::PICTURES {
+        output::write(Some(&folder.join(picture.name)), picture.content)?;
+    }
     println!("Installed in {}. Start Inkscape again and look under Extensions > Ornament.", folder.display());
     Ok(())
 }
@@ -57,7 +59,8 @@ pub fn uninstall(dir: Option<&Path>) -> Result<(), Error> {
             "Close Inkscape and check the folder's permissions",
         )
     };
-    let ours = ["bin/rinceau", "bin/rinceau.exe", inx::PATTERNS.0].map(|name| folder.join(name));
+    let pictures = inx::PICTURES.iter().map(|picture| picture.name);
+    let ours = ["bin/rinceau", "bin/rinceau.exe"].into_iter().chain(pictures).map(|name| folder.join(name));
     let memory = folder.join("bin").join(diagnostics::FILE);
     let entries = fs::read_dir(&folder).map_err(|error| cannot(&folder, &error))?;
     let descriptions = entries.flatten().map(|entry| entry.path());

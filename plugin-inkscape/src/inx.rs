@@ -16,8 +16,49 @@ const UNITS: &[(&str, &str)] =
 const PAGES: [(Page, &str, &str); 3] =
     [(Page::Basic, "basic", "Basic"), (Page::More, "more", "More"), (Page::Curves, "curves", "Curves")];
 
-/// The picture of the built-in patterns, beside the descriptions: name and content.
-pub const PATTERNS: (&str, &[u8]) = ("grow-patterns.png", include_bytes!("../inx/grow-patterns.png"));
+/// A picture of what can be chosen in a dialog, on a page of its own. `docs/gallery` draws them.
+pub struct Picture {
+    generator: &'static str,
+    /// Title of the page.
+    title: &'static str,
+    /// Name of the file, beside the descriptions.
+    pub name: &'static str,
+    /// The file.
+    pub content: &'static [u8],
+}
+
+pub const PICTURES: [Picture; 5] = [
+    Picture {
+        generator: "grow",
+        title: "Patterns",
+        name: "grow-patterns.png",
+        content: include_bytes!("../inx/grow-patterns.png"),
+    },
+    Picture {
+        generator: "grow",
+        title: "Styles",
+        name: "grow-styles.png",
+        content: include_bytes!("../inx/grow-styles.png"),
+    },
+    Picture {
+        generator: "pack",
+        title: "Pictures",
+        name: "pack-choices.png",
+        content: include_bytes!("../inx/pack-choices.png"),
+    },
+    Picture {
+        generator: "vine",
+        title: "Pictures",
+        name: "vine-choices.png",
+        content: include_bytes!("../inx/vine-choices.png"),
+    },
+    Picture {
+        generator: "arrange",
+        title: "Pictures",
+        name: "arrange-choices.png",
+        content: include_bytes!("../inx/arrange-choices.png"),
+    },
+];
 
 /// Roles in the menu, with what the menu calls them.
 const MARKS: &[(&str, &str)] = &[
@@ -212,9 +253,6 @@ fn dialog(generator: &Generator, binary: &str) -> String {
             parameter(&mut inx, spec);
         }
         if page == Page::Basic {
-            let lengths =
-                "What the numbers for width and gap count in; the unit of the document is that of its ruler";
-            combo(&mut inx, "unit", "Lengths in", lengths, (UNITS, "document"));
             number(
                 &mut inx,
                 "seed",
@@ -226,6 +264,9 @@ fn dialog(generator: &Generator, binary: &str) -> String {
             );
         }
         if page == Page::More {
+            let lengths =
+                "What the numbers for width and gap count in; the unit of the document is that of its ruler";
+            combo(&mut inx, "unit", "Lengths in", lengths, (UNITS, "document"));
             number(
                 &mut inx,
                 "time-limit",
@@ -238,11 +279,11 @@ fn dialog(generator: &Generator, binary: &str) -> String {
         }
         inx.0.end_element();
     }
-    if generator.name == "grow" {
+    for picture in PICTURES.iter().filter(|picture| picture.generator == generator.name) {
         inx.0.start_element("page");
-        inx.0.write_attribute("name", "patterns");
-        inx.0.write_attribute("gui-text", "Patterns");
-        inx.text("image", &[], PATTERNS.0);
+        inx.0.write_attribute("name", &picture.title.to_lowercase());
+        inx.0.write_attribute("gui-text", picture.title);
+        inx.text("image", &[], picture.name);
         inx.0.end_element();
     }
     inx.0.start_element("page");
@@ -433,7 +474,16 @@ mod tests {
             let committed = std::fs::read_to_string(folder.join(name)).unwrap_or_default();
             assert_eq!(&committed, content, "{name} is stale: run the tests with RINCEAU_BLESS=1");
         }
-        // And the picture of the patterns.
-        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), files.len() + 1);
+        // And the pictures.
+        assert_eq!(std::fs::read_dir(&folder).unwrap().count(), files.len() + PICTURES.len());
+    }
+
+    /// The first page of a dialog can be taken in at a glance.
+    #[test]
+    fn first_pages_are_short() {
+        for generator in GENERATORS {
+            let basic = generator.table.iter().filter(|spec| spec.page == Page::Basic).count();
+            assert!(basic < 6, "{}: {basic} parameters and the variation", generator.name);
+        }
     }
 }

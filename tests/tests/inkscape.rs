@@ -140,7 +140,6 @@ fn a_selected_shape_fills_with_growth() {
     let plain = svg(
         "<path id=\"leaf\" d=\"M 20,100 C 60,20 140,20 180,100 140,180 60,180 20,100 Z\" style=\"fill:#e8e0c8\"/>\n<circle id=\"start\" class=\"rinceau-seed\" cx=\"40\" cy=\"100\" r=\"1\" style=\"fill:none\"/>",
     );
-    assert!(user.extensions().join("grow-patterns.png").is_file());
     let once = user.edit(&plain, "select-by-id:leaf;org.rinceau.grow.noprefs");
     assert_eq!(rest(&once), rest(&plain));
     let xml = parse(&once);
@@ -417,6 +416,42 @@ fn without_inkscape(text: &str) -> Vec<String> {
         format!("{} {} {} {}", node.tag_name().name(), get("id"), get("d"), get("style"))
     };
     xml.descendants().filter(|node| node.has_attribute("d")).map(of).collect()
+}
+
+/// A dialog as an artist meets it: opened from the selection, a width typed, Apply pressed, closed, and the
+/// drawing saved, with the keys and the mouse.
+#[test]
+fn a_dialog_is_filled_in_and_applied() {
+    let user = User::new();
+    let drawing = svg("<path id=\"leaf\" d=\"M 20,20 H 180 V 180 H 20 Z\" style=\"fill:#e8e0c8\"/>");
+    let input = file(&user.home, "in.svg", drawing);
+    // The width is the first control of the first page, at the right.
+    let script = r#"
+        inkscape --with-gui --actions="select-by-id:leaf;org.rinceau.pack" "$1" & inkscape=$!
+        for i in $(seq 80); do
+            sleep 0.5
+            dialog=$(xdotool search --onlyvisible --name '^Pack along flow$' 2>/dev/null | tail -n 1)
+            [ -n "$dialog" ] && break
+        done
+        sleep 1
+        xdotool windowfocus --sync "$dialog"
+        eval "$(xdotool getwindowgeometry --shell "$dialog")"
+        xdotool mousemove --window "$dialog" $((WIDTH - 104)) 76 click --repeat 3 1 sleep 0.3 type 30
+        xdotool key Tab sleep 0.3 key alt+a
+        sleep 4
+        xdotool key Escape sleep 1
+        main=$(xdotool search --onlyvisible --name 'Inkscape$' | tail -n 1)
+        xdotool windowfocus --sync "$main" key ctrl+s sleep 2 key ctrl+q
+        for i in $(seq 20); do sleep 0.5; kill -0 $inkscape 2>/dev/null || exit 0; done
+        kill $inkscape"#;
+    let mut session = Command::new("xvfb-run");
+    session.args(["-a", "-s", "-screen 0 1280x1000x24", "bash", "-c", script, "bash"]).arg(&input);
+    user.at_home(&mut session);
+    let done = Run::of(session).limit(Duration::from_secs(90)).done();
+    let after = std::fs::read_to_string(&input).unwrap();
+    let xml = parse(&after);
+    let [layer] = layers(&xml)[..] else { panic!("{} layers: {done:?}", layers(&xml).len()) };
+    assert_eq!(layer.attribute((RINCEAU, "params")), Some("{\"spacing\":\"30\"}"));
 }
 
 /// Every entry of the menu, each on something that suits it, in one session.

@@ -185,7 +185,7 @@ impl Document {
         sink: &mut Sink,
     ) -> Result<(), Error> {
         let id = node.plain("id").map_or_else(|| ids.free(), str::to_owned);
-        self.into_layer(xml, node, &id, |target| {
+        self.within_layer(xml, node, &id, |target| {
             let range = node.range();
             let element = &self.text[range.clone()];
             let (tag_end, closes) = start_tag_end(element);
@@ -219,7 +219,7 @@ impl Document {
     /// Does something with what is written into a layer that exists.
     ///
     /// Errors: a layer with a transform that cannot be inverted.
-    pub(super) fn into_layer<T>(
+    pub(super) fn within_layer<T>(
         &self,
         xml: &roxmltree::Document,
         node: Node,

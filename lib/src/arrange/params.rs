@@ -11,7 +11,7 @@ crate::params! {
         #[doc = "How the example is turned: as it is drawn; freely, each element as it fits best; or with the flow of the guides"]
         mode: String = "mode", "Turn", Basic, Kind::Choice(&[("fixed", "As drawn"), ("rotate", "As it fits best"), ("flow", "With the flow")]), "fixed";
         #[doc = "Whether elements move a little in the end, so that distances come as near to the example's as they can everywhere"]
-        relax: bool = "relax", "Even out", Basic, Kind::Switch, "true";
+        relax: bool = "relax", "Even out", More, Kind::Switch, "true";
         #[doc = "Moves only what is within so many steps of what grew last, so that the rest stays as it is. 0 moves everything"]
         window: usize = "window", "Even out within", More, Kind::Whole { min: 0, max: 1000 }, "0";
         #[doc = "Symbols that go first, the most important one first, separated by spaces; all others fill the room between them"]

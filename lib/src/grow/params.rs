@@ -85,7 +85,7 @@ crate::params! {
         #[doc = "Length of one unit of the rules. 0 makes a shape as large as a square of 100 units"]
         rule_unit: Length = "rule-unit", "Size of the pattern", Basic, Kind::Length, "0";
         #[doc = "Where growth starts in a shape that no seed is marked in"]
-        start: String = "start", "Starts", Basic, Kind::Choice(STARTS), "middle";
+        start: String = "start", "Starts", More, Kind::Choice(STARTS), "middle";
         #[doc = "Grows everything together with its images. Bands and wallpapers grow in the rectangle around the shape, which then repeats without a seam; a frame repeats a mirrored piece along each side, and one in its corners"]
         symmetry: String = "symmetry", "Symmetry", Basic, Kind::Choice(SYMMETRIES), "none";
         #[doc = "How often a band or wallpaper repeats within the width of the shape, or a frame between its corners"]

@@ -34,7 +34,7 @@ crate::params! {
         #[doc = "Whether lines become long ones: where their ends touch, or one line through all of them in drawing order, with straight bridges over the gaps. Plotters draw them without lifting the pen"]
         join: String = "join", "Join lines", More, Kind::Choice(&[("none", "No"), ("touching", "Where ends touch"), ("all", "Into one line")]), "none";
         #[doc = "Whether the form is kept, with a small picture, in a layer of explored forms beside the page, next to the one it came from. Select a picture there to run it again"]
-        history: bool = "history", "Keep in explored forms", Basic, Kind::Switch, "false";
+        history: bool = "history", "Keep in explored forms", More, Kind::Switch, "false";
         #[doc = "A sheet of neighbours instead of the form: each clone turned, scaled and mirrored a little, one picture for each change"]
         sheet: bool = "sheet", "Sheet of neighbours", More, Kind::Switch, "false";
         #[doc = "How far a sheet turns each clone, in degrees; it scales it by as many hundredths"]

@@ -13,7 +13,7 @@ crate::params! {
         #[doc = "Width of the main stem where it starts. 0 chooses from the size of the shape"]
         stem_width: Length = "stem-width", "Stem width", Basic, Kind::Length, "0";
         #[doc = "How far each curl winds, in full turns; a list gives a value per level. Small opens the curls, large makes spirals"]
-        turns: Vec<f64> = "turns", "Turns", Basic, Kind::Numbers { min: 0.0, max: 8.0 }, "1.3,1.3,1.2,1";
+        turns: Vec<f64> = "turns", "Turns", Curves, Kind::Numbers { min: 0.0, max: 8.0 }, "1.3,1.3,1.2,1";
         #[doc = "What grows at each fork, opposite to the branch: leaf, flower, bud, none, or a kind or id of your own; several names mix, as in 'leaf leaf bud', and commas give a choice per level"]
         forks: String = "forks", "At forks", Basic, Kind::Names(FORKS), "leaf";
         #[doc = "What sits at the end of each curl: flower, bud, leaf, ball, none, or a kind or id of your own; several names mix, and commas give a choice per level"]

@@ -87,7 +87,7 @@ impl Document {
         self.parse(|xml| {
             let Some(layer) = self.layer_of(xml, generator, sources)? else { return Ok(false) };
             let id = layer.plain("id").unwrap_or("");
-            self.into_layer(xml, layer, id, |target| {
+            self.within_layer(xml, layer, id, |target| {
                 let mut sink = Sink::default();
                 write::content(&mut sink, artwork, target);
                 let text = format!("{}{}</root>", wrapper(target.svg_prefix, id), sink.text);
