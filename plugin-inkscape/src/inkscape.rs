@@ -7,7 +7,7 @@ use crate::run::{self, Job};
 use crate::unbroken;
 use crate::{convert, diagnostics, output, progress, update};
 use rinceau::params::Kind;
-use rinceau::{Error, GENERATORS, Values};
+use rinceau::{Error, GENERATORS, Generator, Values};
 use rinceau_format::{Document, Role, printable};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -17,6 +17,10 @@ use std::time::Duration;
 /// The window is frozen while an extension runs and cannot be cancelled, so a run ends by
 /// itself. The dialog may ask for less.
 const LONGEST_RUN: f64 = 30.0;
+
+/// Seconds of a run at quick quality: with reading, drawing and writing it ends before 200 ms, which a live
+/// preview may take.
+const QUICK_RUN: f64 = 0.08;
 
 /// True if the hidden parameter `tool` is there.
 pub fn called_by_inkscape(arguments: &[OsString]) -> bool {
@@ -85,7 +89,7 @@ impl Call {
         from.or_else(|| self.tool.strip_prefix("save-").map(|format| ("svg", format)))
     }
 
-    fn result(mut self, input: Vec<u8>) -> Result<Vec<u8>, Error> {
+    fn result(self, input: Vec<u8>) -> Result<Vec<u8>, Error> {
         if let Some((from, to)) = self.file_format() {
             // What a format lacks, its menu entry says; a message here would look like a failure.
             return Ok(convert::converted(input, Some(from), to, convert::Finish::default())?.0);
@@ -131,6 +135,11 @@ impl Call {
             eprintln!("{}", diagnostics::text());
             return Ok(input);
         }
+        self.generated(input)
+    }
+
+    /// Runs a generator with what its dialog says.
+    fn generated(mut self, input: Vec<u8>) -> Result<Vec<u8>, Error> {
         let generator = GENERATORS.iter().find(|generator| generator.name == self.tool).ok_or_else(|| {
             Error::new(
                 "unknown-tool",
@@ -140,6 +149,27 @@ impl Call {
         })?;
         let seed = self.take("seed").and_then(|text| text.parse().ok()).unwrap_or(1);
         let seconds: f64 = self.take("time-limit").and_then(|text| text.parse().ok()).unwrap_or(LONGEST_RUN);
+        let is_quick = self.take("quality").is_some_and(|quality| quality == "quick");
+        let seconds = if is_quick { QUICK_RUN } else { seconds.clamp(QUICK_RUN, LONGEST_RUN) };
+        let values = self.values(generator)?;
+        let mut progress = progress::Terminal::new();
+        let done = run::generate(Job {
+            generator,
+            values,
+            seed,
+            ids: self.ids,
+            time_limit: Some(Duration::from_secs_f64(seconds)),
+            bytes: input,
+            progress: &mut progress,
+        })?;
+        progress.start("write");
+        let bytes = done.to_bytes()?;
+        diagnostics::ran(generator.name, progress.stages());
+        Ok(bytes)
+    }
+
+    /// What the parameters that are left say.
+    fn values(&mut self, generator: &Generator) -> Result<Values, Error> {
         // A file goes before the pattern beside it.
         if let Some(file) = self.take("rules-file").filter(|file| !file.trim().is_empty()) {
             self.params.retain(|(name, _)| name != "rules");
@@ -167,21 +197,7 @@ impl Call {
                 values.set(generator.table, name, value)?;
             }
         }
-        let time_limit = Some(Duration::from_secs_f64(seconds.clamp(0.05, LONGEST_RUN)));
-        let mut progress = progress::Terminal::new();
-        let done = run::generate(Job {
-            generator,
-            values,
-            seed,
-            ids: self.ids,
-            time_limit,
-            bytes: input,
-            progress: &mut progress,
-        })?;
-        progress.start("write");
-        let bytes = done.to_bytes()?;
-        diagnostics::ran(generator.name, progress.stages());
-        Ok(bytes)
+        Ok(values)
     }
 
     fn take(&mut self, name: &str) -> Option<String> {

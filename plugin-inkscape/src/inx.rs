@@ -12,6 +12,9 @@ const MENU: &str = "Ornament";
 const UNITS: &[(&str, &str)] =
     &[("document", "units of the document"), ("mm", "mm"), ("px", "px"), ("in", "inches"), ("pt", "pt")];
 
+/// How much time a run may take.
+const QUALITIES: &[(&str, &str)] = &[("full", "Full"), ("quick", "Quick, for Live preview")];
+
 /// Pages of a dialog, in order.
 const PAGES: [(Page, &str, &str); 3] =
     [(Page::Basic, "basic", "Basic"), (Page::More, "more", "More"), (Page::Curves, "curves", "Curves")];
@@ -267,6 +270,8 @@ fn dialog(generator: &Generator, binary: &str) -> String {
             let lengths =
                 "What the numbers for width and gap count in; the unit of the document is that of its ruler";
             combo(&mut inx, "unit", "Lengths in", lengths, (UNITS, "document"));
+            let quality = "Quick shows what there is after a moment, which matters for large shapes alone. Update all makes it in full";
+            combo(&mut inx, "quality", "Quality", quality, (QUALITIES, "full"));
             number(
                 &mut inx,
                 "time-limit",
