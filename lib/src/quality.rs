@@ -30,6 +30,7 @@ pub struct Raster {
 /// `mean_gap`, twice the mean distance in the gaps: half their width, if they are channels;
 /// `largest_gap`, radius of the largest empty disc over `mean_gap` (1 is perfect);
 /// `gap_cv`, coefficient of variation of gap widths along their middle;
+/// `boundary`, share of the outline that has something drawn within `mean_gap`;
 /// `evenness`, 1 for gaps of one width everywhere, less for any other.
 ///
 /// Errors: a container that cannot be read; there is nothing to measure in.
@@ -99,6 +100,19 @@ impl Raster {
         (all, middle)
     }
 
+    /// Share of the cells along the outline that are no farther than this from what is drawn.
+    fn bordered(&self, reach: f64) -> f64 {
+        let outside = |i: usize| self.inside.get(i).is_none_or(|inside| !inside);
+        let on_outline = |&i: &usize| {
+            let around = [i.wrapping_sub(1), i + 1, i.wrapping_sub(self.columns), i + self.columns];
+            self.inside[i] && around.into_iter().any(outside)
+        };
+        let outline: Vec<usize> = (0..self.inside.len()).filter(on_outline).collect();
+        let squared = squared_distances(&self.ink, self.columns);
+        let near = outline.iter().filter(|&&i| (squared[i].sqrt() - 0.5) * self.cell <= reach).count();
+        near as f64 / (outline.len() as f64).max(1.0)
+    }
+
     /// The measures.
     pub fn measure(&self) -> BTreeMap<String, f64> {
         let inside = self.inside.iter().filter(|&&inside| inside).count() as f64;
@@ -115,6 +129,7 @@ impl Raster {
             ("mean_gap".to_owned(), half_width),
             ("largest_gap".to_owned(), share(largest, half_width)),
             ("gap_cv".to_owned(), share(spread, middle)),
+            ("boundary".to_owned(), self.bordered(half_width)),
             ("evenness".to_owned(), evenness(&distances, half_width, largest)),
         ])
     }

@@ -133,6 +133,38 @@ fn every_sample_keeps_its_promises() {
     }
 }
 
+/// Every piece of a mirrored composition has its image, and all promises hold across the axis.
+#[test]
+fn mirrored_halves_are_alike_and_keep_apart() {
+    for (turn, symmetry, guide) in [
+        (0, "mirror", ""),
+        (35, "mirror", ""),
+        (0, "line", "<path class='rinceau-guide' d='M20,210H380' fill='none'/>"),
+    ] {
+        let outline = "M200,60C260,10 370,30 370,120C370,220 250,300 200,360C150,300 30,220 30,120C30,30 140,10 200,60Z";
+        let svg = format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 400 400'><path id='c' class='rinceau-container' transform='rotate({turn} 200 200)' d='{outline}'/>{guide}</svg>"
+        );
+        let (_, scene) = read(svg);
+        let params =
+            [("spacing", "24".to_owned()), ("min-gap", "3".to_owned()), ("symmetry", symmetry.to_owned())];
+        let artwork = pack(&scene, &params, 3).unwrap();
+        let container = Region::new(contours(&scene.containers[0].outlines[0].path)).unwrap();
+        check(&artwork, &container, &[], 3.0);
+        let elements = pieces(&artwork, "elements");
+        assert!(elements.len() > 16 && elements.len().is_multiple_of(2), "{}", elements.len());
+        for pair in elements.chunks(2) {
+            let ink = |piece: &Vec<Vec<Point>>| piece.iter().map(|c| signed_area(c).abs()).sum::<f64>();
+            assert!((ink(&pair[0]) - ink(&pair[1])).abs() < 1e-6 * ink(&pair[0]).max(1.0));
+        }
+    }
+    let (_, scene) = read(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 400 400'><circle class='rinceau-container' cx='200' cy='200' r='150'/></svg>",
+    );
+    let refused = pack(&scene, &[("symmetry", "line".to_owned())], 1).unwrap_err();
+    assert_eq!(refused.code(), "no-axis");
+}
+
 /// Stops after a number of steps, as a clock would, but at the same place every time.
 struct Steps(usize);
 

@@ -7,6 +7,7 @@ pub mod catmull_rom;
 pub mod crossing;
 pub mod distance;
 pub mod flatten;
+pub mod mirror;
 pub mod near;
 pub mod polyline;
 pub mod region;

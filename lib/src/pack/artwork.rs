@@ -43,13 +43,18 @@ impl Made<'_> {
     /// Counts for the report.
     fn counts(&self) -> BTreeMap<String, f64> {
         let mut counts = BTreeMap::new();
+        // Each is drawn once, or twice with its mirror image.
+        let times = |field: usize| if self.prepared.fields[field].mirror.is_some() { 2.0 } else { 1.0 };
         for placed in self.placed {
-            *counts.entry(format!("elements.{}", self.templates[placed.template].id)).or_insert(0.0) += 1.0;
+            let count =
+                counts.entry(format!("elements.{}", self.templates[placed.template].id)).or_insert(0.0);
+            *count += times(placed.field);
         }
-        let dots: f64 = self.fillers.iter().map(|filler| PI * filler.radius * filler.radius).sum();
-        let ink: f64 = self.placed.iter().map(|placed| placed.area).sum();
-        counts.insert("elements".into(), self.placed.len() as f64);
-        counts.insert("fillers".into(), self.fillers.len() as f64);
+        let dots: f64 =
+            self.fillers.iter().map(|filler| times(filler.field) * PI * filler.radius * filler.radius).sum();
+        let ink: f64 = self.placed.iter().map(|placed| times(placed.field) * placed.area).sum();
+        counts.insert("elements".into(), self.placed.iter().map(|placed| times(placed.field)).sum());
+        counts.insert("fillers".into(), self.fillers.iter().map(|filler| times(filler.field)).sum());
         counts.insert("streamlines".into(), self.streamlines as f64);
         counts.insert("coverage".into(), (ink + dots) / self.prepared.area.max(f64::MIN_POSITIVE));
         counts
@@ -80,16 +85,19 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
             };
             Part { path, transform: Affine::IDENTITY, style }
         });
-        elements.items.push(Item::new(template.id.clone(), parts.collect()));
-        spines.items.push(spine_item(&placed.spine));
+        let mirror = prepared.fields[placed.field].mirror;
+        push(&mut elements, Item::new(template.id.clone(), parts.collect()), mirror);
+        push(&mut spines, spine_item(&placed.spine), mirror);
     }
     let dot = |filler: &Filler| {
         // The accent, so that the smallest shapes are seen as one family.
         let style = Style::filled(made.palette(filler.field, scene)[2]);
         Item::new("dot", vec![Part { path: filler.path(), transform: Affine::IDENTITY, style }])
     };
-    let fillers =
-        Group { name: "fillers".into(), items: made.fillers.iter().map(dot).collect(), ..Group::default() };
+    let mut fillers = Group { name: "fillers".into(), ..Group::default() };
+    for filler in made.fillers {
+        push(&mut fillers, dot(filler), prepared.fields[filler.field].mirror);
+    }
     let fixed = Group {
         name: "fixed".into(),
         items: scene
@@ -105,6 +113,16 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
     warnings.extend(prepared.warnings.iter().cloned());
     warnings.extend(made.bare_spines());
     Artwork { groups, complete, warnings, counts: made.counts(), decimals, ..Artwork::default() }
+}
+
+/// Adds an item, and its mirror image if there is one.
+fn push(group: &mut Group, item: Item, mirror: Option<Affine>) {
+    let image = mirror.map(|mirror| {
+        let parts = item.parts.iter().map(|part| Part { path: mirror * part.path.clone(), ..part.clone() });
+        Item::new(item.of.clone(), parts.collect())
+    });
+    group.items.push(item);
+    group.items.extend(image);
 }
 
 /// A built-in part in a palette's tone. Its holes are holes, so one tone is enough.

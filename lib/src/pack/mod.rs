@@ -64,7 +64,7 @@ pub fn generate(
     let usable = prepared.fields.iter().map(|field| library::usable(&templates, field, scene));
     let usable = usable.collect::<Result<Vec<_>, _>>()?;
 
-    let (blobs, mut complete) = rooms(&prepared, &templates, &usable, rng, progress);
+    let (blobs, flows, mut complete) = rooms(&prepared, &templates, &usable, rng, progress);
     let step = |done| progress.step("cast", done);
     let (mut bodies, finished) = cast::cast(&prepared, &templates, &usable, &blobs, &mut rng.fork(), step);
     complete &= finished;
@@ -82,7 +82,7 @@ pub fn generate(
         return Err(nothing_placed(complete));
     }
     progress.step("artwork", 0.0);
-    Ok(artwork::artwork(
+    let mut artwork = artwork::artwork(
         &Made {
             prepared: &prepared,
             templates: &templates,
@@ -92,10 +92,27 @@ pub fn generate(
         },
         scene,
         complete,
-    ))
+    );
+    artwork.counts.insert("flow-angle".to_owned(), flow_angle(&placement, &flows));
+    Ok(artwork)
 }
 
-/// Steps 3 and 4: a streamline for every element to be, and the room around each. False if the
+/// Mean angle between elements and the flow where they lie, in degrees.
+fn flow_angle(placement: &Placement, flows: &[Option<DirectionField>]) -> f64 {
+    let (mut sum, mut total) = (0.0, 0.0);
+    for placed in &placement.placed {
+        let Some(flow) = &flows[placed.field] else { continue };
+        for side in placed.spine.windows(2) {
+            let along = side[1] - side[0];
+            let Some(direction) = flow.direction(side[0].midpoint(side[1]), along) else { continue };
+            sum += along.hypot() * along.cross(direction).abs().atan2(along.dot(direction).abs());
+            total += along.hypot();
+        }
+    }
+    (sum / f64::max(total, f64::MIN_POSITIVE)).to_degrees()
+}
+
+/// Steps 3 and 4: a streamline for every element to be, the room around each, and the flow of each field. False if the
 /// time ran out first.
 fn rooms(
     prepared: &Prepared,
@@ -103,15 +120,18 @@ fn rooms(
     usable: &[Vec<usize>],
     rng: &mut Rng,
     progress: &mut dyn Progress,
-) -> (Vec<Blob>, bool) {
+) -> (Vec<Blob>, Vec<Option<DirectionField>>, bool) {
     // Finer cells than these change no direction that an element could follow.
     const CELLS: f64 = 112.0;
     let mut complete = true;
-    let mut blobs = Vec::new();
+    let (mut blobs, mut flows) = (Vec::new(), Vec::new());
     for (index, (field, usable)) in prepared.fields.iter().zip(usable).enumerate() {
         complete &= progress.step("field", index as f64 / prepared.fields.len() as f64);
         let cell = (field.sizes.spacing / 4.0).min(prepared.input_size / CELLS);
-        let Some(flow) = DirectionField::new(&field.region, &field.guides, cell) else { continue };
+        let Some(flow) = DirectionField::new(&field.region, &field.guides, cell) else {
+            flows.push(None);
+            continue;
+        };
         let half_elements = usable.iter().any(|&t| templates[t].side != Side::Full);
         progress.step("streamlines", 0.0);
         let (lines, finished) =
@@ -119,8 +139,9 @@ fn rooms(
         complete &= finished;
         progress.step("blobs", 0.0);
         blobs.extend(blob::blobs(index, field, &flow, lines));
+        flows.push(Some(flow));
     }
-    (blobs, complete)
+    (blobs, flows, complete)
 }
 
 fn nothing_placed(complete: bool) -> Error {

@@ -41,6 +41,8 @@ crate::params! {
         variety: f64 = "variety", "Variety", More, Kind::Number { min: 0.0, max: 1.0 }, "0.5";
         #[doc = "Which way elements point: with the arrows of the guides, or either way, whatever fits best"]
         sense: String = "sense", "Pointing", More, Kind::Choice(&[("arrow", "With the arrows"), ("any", "Either way")]), "arrow";
+        #[doc = "Whether one half is composed and the other is its mirror image: about the line that the shape is most alike about, or about the first guide that is straight"]
+        symmetry: String = "symmetry", "Symmetry", More, Kind::Choice(&[("none", "None"), ("mirror", "Alike on both sides"), ("line", "Alike beside a straight guide")]), "none";
         #[doc = "How often the composition is refined: elements move apart, turn and grow into the gaps. 0 leaves them as first placed"]
         iterations: usize = "iterations", "Refinements", More, Kind::Whole { min: 0, max: 200 }, "15";
         #[doc = "Whether half elements line the outline where the flow runs along it"]

@@ -2,11 +2,12 @@
 //! F-015, F-040).
 
 use super::params::{Params, Sizes};
-use crate::geom::boolean::Contour;
+use crate::geom::boolean::{Contour, intersection};
+use crate::geom::mirror::Axis;
 use crate::geom::polyline;
 use crate::geom::region::Region;
 use crate::shapes::{Lines, Shapes, closed, passes, polylines};
-use kurbo::{Point, Rect};
+use kurbo::{Affine, Point, Rect};
 use rinceau_format::{Container, Error, Guide, Scene};
 
 /// One container ready to fill.
@@ -22,6 +23,8 @@ pub(super) struct Field {
     /// True if the artist drew them, so that their sense means something.
     pub guided: bool,
     pub fixed_spines: Vec<Vec<Point>>,
+    /// If the region is one half: where its artwork is drawn again.
+    pub mirror: Option<Affine>,
 }
 
 /// What all containers share.
@@ -61,7 +64,16 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
         check_gap(&sizes, container)?;
         match shapes.free(index, sizes.gap, sizes.edge) {
             Some(region) => {
-                prepared.fields.push(field(index, own, sizes, region, (&guides, &spines)));
+                let axis = axis(&own, &region, (&guides, container))?;
+                match half(region, axis, &sizes) {
+                    Some(region) => {
+                        prepared.fields.push(field(index, own, sizes, region, (&guides, &spines), axis))
+                    }
+                    None => prepared.warnings.push(format!(
+                        "The container '{}' has nothing alike on both sides of its axis",
+                        container.source.id
+                    )),
+                }
             }
             None => prepared.warnings.push(format!(
                 "The container '{}' is too small or too thin for anything to fit, or lies under another",
@@ -79,15 +91,75 @@ fn field(
     sizes: Sizes,
     region: Region,
     (guides, spines): (&Lines, &Lines),
+    axis: Option<Axis>,
 ) -> Field {
     let through = |lines: &Lines, reach: f64| -> Vec<Vec<Point>> {
         lines.iter().map(|(_, line)| line).filter(|line| passes(line, &region, reach)).cloned().collect()
     };
-    let own_guides = through(guides, sizes.spacing / 2.0);
+    let mirror = axis.map(|axis| axis.reflection());
+    // Of a mirrored shape each line counts in the half that it lies in, or else from the other side.
+    let through = |lines: &Lines, reach: f64| -> Vec<Vec<Point>> {
+        let reflected = |mirror: Affine| -> Vec<Vec<Point>> {
+            let across =
+                |(index, line): &(usize, Vec<Point>)| (*index, line.iter().map(|&p| mirror * p).collect());
+            through(&lines.iter().map(across).collect(), reach)
+        };
+        match through(lines, reach) {
+            own if own.is_empty() => mirror.map_or(own, reflected),
+            own => own,
+        }
+    };
+    let guides: Lines =
+        guides.iter().filter(|(_, line)| params.symmetry != "line" || !is_straight(line)).cloned().collect();
+    let own_guides = through(&guides, sizes.spacing / 2.0);
     let fixed_spines = through(spines, 0.0);
     let guided = !own_guides.is_empty();
     let guides = if guided { own_guides } else { region.contours().iter().map(closed).collect() };
-    Field { container, params, sizes, region, guides, guided, fixed_spines }
+    Field { container, params, sizes, region, guides, guided, fixed_spines, mirror }
+}
+
+/// What a container is mirrored about, if it is.
+///
+/// Errors: it should be about a straight guide, and there is none.
+fn axis(
+    params: &Params,
+    region: &Region,
+    (guides, container): (&Lines, &Container),
+) -> Result<Option<Axis>, Error> {
+    match params.symmetry.as_str() {
+        "mirror" => Ok(Axis::of(region.contours())),
+        "line" => {
+            let straight = guides.iter().map(|(_, line)| line).find(|line| is_straight(line));
+            let Some([at, .., end]) = straight.map(Vec::as_slice) else {
+                return Err(container.source.error(
+                    "no-axis",
+                    format!("There is no straight guide to mirror '{}' about", container.source.id),
+                    "Draw a straight line as the axis and mark it as guide, or let the axis be found",
+                ));
+            };
+            let along = *end - *at;
+            Ok(Some(Axis { at: *at, along: along / along.hypot() }))
+        }
+        _ => Ok(None),
+    }
+}
+
+/// True for a line that bows by a hundredth of its length at most.
+fn is_straight(line: &[Point]) -> bool {
+    const BOW: f64 = 0.01;
+    let [start, .., end] = line else { return false };
+    let chord = *end - *start;
+    let off = |p: &Point| chord.cross(*p - *start).abs() / chord.hypot();
+    chord.hypot() > 0.0 && line.iter().all(|p| off(p) <= BOW * chord.hypot())
+}
+
+/// The half of a region that is composed: what it has in common with its mirror image, half a gap from
+/// the axis, so that the two halves keep the gap.
+fn half(region: Region, axis: Option<Axis>, sizes: &Sizes) -> Option<Region> {
+    let Some(axis) = axis else { return Some(region) };
+    let reach = 4.0 * region.bounds().union_pt(axis.at).size().max_side();
+    let alike = intersection(region.contours(), &axis.reflected(region.contours()));
+    Region::new(intersection(&alike, &[axis.half(sizes.safe_gap() / 2.0, reach)]))
 }
 
 /// A gap as wide as an element leaves no room for the element.
