@@ -35,6 +35,23 @@ pub struct Raster {
 ///
 /// Errors: a container that cannot be read; there is nothing to measure in.
 pub fn measure(scene: &Scene, artwork: &Artwork) -> Result<BTreeMap<String, f64>, Error> {
+    Ok(raster_of(scene, artwork)?.1.measure())
+}
+
+/// Discs that fill the gaps of an artwork, the largest first: middle and radius.
+///
+/// Errors: as [`measure`].
+pub fn gap_discs(scene: &Scene, artwork: &Artwork) -> Result<Vec<(Point, f64)>, Error> {
+    let (origin, raster) = raster_of(scene, artwork)?;
+    let middle = |i: usize| {
+        let at = |i: usize| (i as f64 + 0.5) * raster.cell;
+        Point::new(origin.x + at(i % raster.columns), origin.y + at(i / raster.columns))
+    };
+    Ok(raster.discs().into_iter().map(|(i, radius)| (middle(i), radius)).collect())
+}
+
+/// The raster of an artwork, and its corner.
+fn raster_of(scene: &Scene, artwork: &Artwork) -> Result<(Point, Raster), Error> {
     let shapes = Shapes::new(scene, &[])?;
     let cell = (shapes.bounds.area() / CELLS).sqrt().max(f64::MIN_POSITIVE);
     let mut raster = Raster::new(shapes.bounds, cell);
@@ -47,7 +64,7 @@ pub fn measure(scene: &Scene, artwork: &Artwork) -> Result<BTreeMap<String, f64>
     for part in drawn.flat_map(|group| &group.items).flat_map(|item| artwork.shapes(item)) {
         raster.add_ink(shapes.bounds.origin(), &area_of(&part, cell));
     }
-    Ok(raster.measure())
+    Ok((shapes.bounds.origin(), raster))
 }
 
 /// What a part covers, as simple contours.
@@ -98,6 +115,40 @@ impl Raster {
         };
         let middle = in_gap.iter().filter(is_middle).map(|&i| distance(i)).collect();
         (all, middle)
+    }
+
+    /// Cells and radii of discs in the gaps, the largest first, none with its middle deep in another.
+    fn discs(&self) -> Vec<(usize, f64)> {
+        /// A disc keeps the middles of smaller ones out of this share of its radius.
+        const DEEP: f64 = 0.8;
+        let taken: Vec<bool> =
+            self.inside.iter().zip(&self.ink).map(|(&inside, &ink)| ink || !inside).collect();
+        let squared = squared_distances(&taken, self.columns);
+        let mut cells: Vec<usize> = (0..taken.len()).filter(|&i| squared[i] > 4.0).collect();
+        cells.sort_by(|&a, &b| squared[b].total_cmp(&squared[a]).then(a.cmp(&b)));
+        let mut is_covered = vec![false; taken.len()];
+        let mut discs = Vec::new();
+        for i in cells {
+            if is_covered[i] {
+                continue;
+            }
+            let radius = squared[i].sqrt() - 0.5;
+            // A cell less, since cells are covered by halves: no disc reaches over what it lies between.
+            discs.push((i, (radius - 1.0) * self.cell));
+            let reach = DEEP * radius;
+            let (x, y) = ((i % self.columns) as f64, (i / self.columns) as f64);
+            let rows = taken.len() / self.columns;
+            let range =
+                |at: f64, most: usize| (at - reach).max(0.0) as usize..=((at + reach) as usize).min(most - 1);
+            for row in range(y, rows) {
+                for column in range(x, self.columns) {
+                    if (column as f64 - x).hypot(row as f64 - y) <= reach {
+                        is_covered[row * self.columns + column] = true;
+                    }
+                }
+            }
+        }
+        discs
     }
 
     /// Share of the cells along the outline that are no farther than this from what is drawn.

@@ -165,6 +165,38 @@ fn mirrored_halves_are_alike_and_keep_apart() {
     assert_eq!(refused.code(), "no-axis");
 }
 
+/// Shapes of the gaps keep the gap to elements, to each other's halves and to the outline; the map of the
+/// gaps lies in them.
+#[test]
+fn shapes_of_the_gaps_keep_apart() {
+    for symmetry in ["none", "mirror"] {
+        let (_, scene) = read(
+            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 400 400'><path class='rinceau-container' d='M200,30C320,20 390,120 360,230S250,390 200,370 60,340 40,230 80,40 200,30Z'/><circle class='rinceau-fixed' cx='200' cy='190' r='25'/></svg>",
+        );
+        let params = [
+            ("spacing", "40".to_owned()),
+            ("min-gap", "4".to_owned()),
+            ("fillers", "shapes".to_owned()),
+            ("symmetry", symmetry.to_owned()),
+            ("show-gaps", "true".to_owned()),
+        ];
+        let artwork = pack(&scene, &params, 2).unwrap();
+        let container = Region::new(contours(&scene.containers[0].outlines[0].path)).unwrap();
+        let (elements, shapes) = (pieces(&artwork, "elements"), pieces(&artwork, "negative"));
+        assert!(shapes.len() > 4, "{}", shapes.len());
+        for (i, shape) in shapes.iter().enumerate() {
+            assert_inside(&format!("shape {i}"), shape, &container);
+            assert!(elements.iter().all(|element| distance(shape, element, 4.0) >= 4.0 - SLACK));
+            assert!(distance(shape, &[disc((200.0, 190.0), 25.0)], 4.0) >= 4.0 - SLACK - 0.08);
+        }
+        let gaps = artwork.group("gaps").unwrap();
+        assert!(gaps.hidden && gaps.items.len() > 50);
+        for gap in pieces(&artwork, "gaps") {
+            assert_inside("a disc of the map", &gap, &container);
+        }
+    }
+}
+
 /// Stops after a number of steps, as a clock would, but at the same place every time.
 struct Steps(usize);
 

@@ -77,6 +77,35 @@ pub fn left_of(tangent: Vec2) -> Vec2 {
     Vec2::new(-tangent.y, tangent.x)
 }
 
+/// A closed polyline with as few corners as leave it within `tolerance` (Ramer, Douglas, Peucker).
+pub fn simplified_closed(points: &[Point], tolerance: f64) -> Vec<Point> {
+    let Some(&first) = points.first() else { return Vec::new() };
+    // Cut where it is sure to have a corner: at the first point and the one farthest from it.
+    let far = |i: &usize| points[*i].distance_squared(first);
+    let middle = (0..points.len()).max_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0);
+    let ring: Vec<Point> = points.iter().chain([&first]).copied().collect();
+    let mut keep = vec![false; points.len()];
+    let mut todo = vec![(0, middle), (middle, points.len())];
+    while let Some((from, to)) = todo.pop() {
+        keep[from] = true;
+        let (a, b) = (ring[from], ring[to]);
+        let chord = b - a;
+        let off = |p: Point| match chord.hypot2() {
+            0.0 => p.distance(a),
+            length => {
+                let t = ((p - a).dot(chord) / length).clamp(0.0, 1.0);
+                p.distance(a + t * chord)
+            }
+        };
+        let worst = (from + 1..to).map(|i| (off(ring[i]), i)).max_by(|x, y| x.0.total_cmp(&y.0));
+        if let Some((distance, i)) = worst.filter(|worst| worst.0 > tolerance) {
+            debug_assert!(distance.is_finite());
+            todo.extend([(from, i), (i, to)]);
+        }
+    }
+    points.iter().zip(keep).filter(|(_, keep)| *keep).map(|(p, _)| *p).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -93,5 +122,26 @@ mod tests {
     fn a_part_has_the_length_asked_for() {
         let points = [(0.0, 0.0), (3.0, 0.0), (3.0, 4.0)].map(Point::from);
         assert!((length(&between(&points, 1.0, 5.0)) - 4.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn closed_lines_keep_their_corners_alone() {
+        let ring: Vec<Point> = (0..400)
+            .map(|i| {
+                let (side, t) = (i / 100, f64::from(i % 100) / 10.0);
+                match side {
+                    0 => Point::new(t, 0.0),
+                    1 => Point::new(10.0, t),
+                    2 => Point::new(10.0 - t, 10.0),
+                    _ => Point::new(0.0, 10.0 - t),
+                }
+            })
+            .collect();
+        assert_eq!(simplified_closed(&ring, 1e-9).len(), 4);
+        let circle: Vec<Point> =
+            (0..1000).map(|i| (10.0 * Vec2::from_angle(f64::from(i) * 0.006_283_185_3)).to_point()).collect();
+        let few = simplified_closed(&circle, 0.01);
+        assert!((60..200).contains(&few.len()), "{}", few.len());
+        assert!(simplified_closed(&[], 1.0).is_empty());
     }
 }

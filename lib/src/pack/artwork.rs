@@ -1,6 +1,7 @@
 //! Placed elements to an artwork with its sublayers and counts.
 
 use super::fill::Filler;
+use super::negative::Shape;
 use super::paint;
 use super::place::Placed;
 use super::prepare::Prepared;
@@ -20,6 +21,7 @@ pub(super) struct Made<'a> {
     pub templates: &'a [Template],
     pub placed: &'a [Placed],
     pub fillers: &'a [Filler],
+    pub negative: &'a [Shape],
     pub streamlines: usize,
 }
 
@@ -53,10 +55,14 @@ impl Made<'_> {
         let dots: f64 =
             self.fillers.iter().map(|filler| times(filler.field) * PI * filler.radius * filler.radius).sum();
         let ink: f64 = self.placed.iter().map(|placed| times(placed.field) * placed.area).sum();
-        counts.insert("elements".into(), self.placed.iter().map(|placed| times(placed.field)).sum());
-        counts.insert("fillers".into(), self.fillers.iter().map(|filler| times(filler.field)).sum());
+        let count =
+            |fields: &mut dyn Iterator<Item = usize>| fields.map(times).fold(0.0, |all, one| all + one);
+        counts.insert("elements".into(), count(&mut self.placed.iter().map(|placed| placed.field)));
+        counts.insert("fillers".into(), count(&mut self.fillers.iter().map(|filler| filler.field)));
+        counts.insert("negative".into(), count(&mut self.negative.iter().map(|shape| shape.field)));
         counts.insert("streamlines".into(), self.streamlines as f64);
-        counts.insert("coverage".into(), (ink + dots) / self.prepared.area.max(f64::MIN_POSITIVE));
+        let shapes: f64 = self.negative.iter().map(|shape| times(shape.field) * shape.area()).sum();
+        counts.insert("coverage".into(), (ink + dots + shapes) / self.prepared.area.max(f64::MIN_POSITIVE));
         counts
     }
 }
@@ -77,6 +83,9 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
     for ((placed, tone), paths) in made.placed.iter().zip(tones).zip(bent) {
         let template = &made.templates[placed.template];
         let palette = made.palette(placed.field, scene);
+        // The accent is for the shapes of the gaps, where there are some.
+        let has_shapes = prepared.fields[placed.field].params.fillers == "shapes";
+        let tone = if has_shapes && tone == 2 { elements.items.len() % 2 } else { tone };
         let parts = template.parts.iter().zip(paths).map(|((_, style), path)| {
             let style = if template.builtin {
                 painted(style, palette[tone])
@@ -98,6 +107,12 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
     for filler in made.fillers {
         push(&mut fillers, dot(filler), prepared.fields[filler.field].mirror);
     }
+    let mut negative = Group { name: "negative".into(), ..Group::default() };
+    for shape in made.negative {
+        let style = Style::filled(made.palette(shape.field, scene)[2]);
+        let part = Part { path: shape.path(), transform: Affine::IDENTITY, style };
+        push(&mut negative, Item::new("gap", vec![part]), prepared.fields[shape.field].mirror);
+    }
     let fixed = Group {
         name: "fixed".into(),
         items: scene
@@ -107,7 +122,7 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
             .collect(),
         ..Group::default()
     };
-    let mut groups = vec![elements, fillers, fixed, spines];
+    let mut groups = vec![elements, fillers, negative, fixed, spines];
     groups.retain(|group| !group.items.is_empty());
     let mut warnings = scene.warnings.clone();
     warnings.extend(prepared.warnings.iter().cloned());

@@ -11,7 +11,7 @@
 //!
 //! 6. Refine the composition: shift, extend and grow (4.6): `refine`.
 //!
-//! 7. Fill the gaps that are left with dots (6): `fill`.
+//! 7. Fill the gaps that are left with dots (6) or with their own shapes (5): `fill`, `negative`.
 //!
 //! Departures are argued where they happen: lines on the boundary (`lines`), lines cut into
 //! equal pieces (`field::streamline`), rooms in closed form (`blob`), trial fits and smooth
@@ -25,6 +25,8 @@ mod choose;
 mod fill;
 mod library;
 mod lines;
+mod map;
+mod negative;
 mod paint;
 mod params;
 mod place;
@@ -73,10 +75,12 @@ pub fn generate(
     let mut placement = Placement::new(&prepared);
     complete &= placement.place(&bodies, &templates, &prepared, |done| progress.step("place", done));
     // Out of time, dots would fill what elements should have.
-    let mut fillers = Vec::new();
+    let (mut fillers, mut negative) = (Vec::new(), Vec::new());
     if complete {
         progress.step("fill", 0.0);
         (fillers, complete) = fill::fill(&prepared, &mut placement, |done| progress.step("fill", done));
+        let (all, finished) = negative::shapes(&prepared, &placement, |done| progress.step("fill", done));
+        (negative, complete) = (all, complete && finished);
     }
     if placement.placed.is_empty() {
         return Err(nothing_placed(complete));
@@ -88,11 +92,15 @@ pub fn generate(
             templates: &templates,
             placed: &placement.placed,
             fillers: &fillers,
+            negative: &negative,
             streamlines: blobs.len(),
         },
         scene,
         complete,
     );
+    if prepared.fields.iter().any(|field| field.params.show_gaps) {
+        artwork.groups.extend(map::map(scene, &artwork)?);
+    }
     artwork.counts.insert("flow-angle".to_owned(), flow_angle(&placement, &flows));
     Ok(artwork)
 }

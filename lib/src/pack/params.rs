@@ -33,8 +33,8 @@ crate::params! {
         min_length: Length = "min-length", "Shortest element", More, Kind::Length, "0";
         #[doc = "Empty distance kept from the outline of the shape. 0 chooses half the gap"]
         edge: Length = "edge", "Distance from outline", More, Kind::Length, "0";
-        #[doc = "What goes into the gaps that are left: small dots, or nothing"]
-        fillers: String = "fillers", "Fill gaps with", Basic, Kind::Choice(&[("dots", "Dots"), ("none", "Nothing")]), "dots";
+        #[doc = "What goes into the gaps that are left: small dots, shapes that follow the elements around them, or nothing"]
+        fillers: String = "fillers", "Fill gaps with", Basic, Kind::Choice(&[("dots", "Dots"), ("shapes", "Shapes of the gaps"), ("none", "Nothing")]), "dots";
         #[doc = "How freely an element's width may swell and shrink along its length to fill the space it has: 1 keeps its proportions, 3 is very free"]
         stretch: f64 = "stretch", "Swelling", More, Kind::Number { min: 1.0, max: 3.0 }, "1.6";
         #[doc = "How hard equal neighbours are avoided: 0 takes whatever fits best, 1 mixes as much as it can"]
@@ -45,6 +45,8 @@ crate::params! {
         symmetry: String = "symmetry", "Symmetry", More, Kind::Choice(&[("none", "None"), ("mirror", "Alike on both sides"), ("line", "Alike beside a straight guide")]), "none";
         #[doc = "How often the composition is refined: elements move apart, turn and grow into the gaps. 0 leaves them as first placed"]
         iterations: usize = "iterations", "Refinements", More, Kind::Whole { min: 0, max: 200 }, "15";
+        #[doc = "Whether a hidden sublayer shows how wide the gaps are: blue where they are narrower than their mean, red where they are wider"]
+        show_gaps: bool = "show-gaps", "Map of the gaps", More, Kind::Switch, "false";
         #[doc = "Whether half elements line the outline where the flow runs along it"]
         border: bool = "border", "Line the outline with half elements", More, Kind::Switch, "true";
     }

@@ -171,6 +171,11 @@ impl Placement {
         self.outlines.insert_contour(outline, owner);
     }
 
+    /// Half the width of the widest stroke.
+    pub fn widest_stroke(&self) -> f64 {
+        self.strokes.iter().copied().fold(0.0, f64::max)
+    }
+
     /// Distance from a place to the nearest outline, from inside as from outside; `reach` at
     /// most.
     pub fn distance(&self, at: Point, reach: f64) -> f64 {

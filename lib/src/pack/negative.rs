@@ -1,0 +1,89 @@
+//! Shapes of the gaps (FLOWPAK 5, Figure 16, checklist F-075): what is left between elements, less the
+//! gap on all sides, as forms of their own. They look best among long elements that lie far apart.
+
+use super::place::Placement;
+use super::prepare::{Field, Prepared};
+use crate::geom::boolean::{Contour, area, difference, is_outer, offset, signed_area};
+use crate::geom::polyline;
+use crate::geom::region::Region;
+use kurbo::{BezPath, Point, Rect};
+
+/// Corners have this radius, in spacings, and what is thinner than twice it is left out.
+const ROUND: f64 = 0.045;
+/// Smaller shapes read as dust: area in squares of the spacing.
+const SMALLEST: f64 = 0.03;
+
+/// A shape with its holes.
+#[derive(Clone, Debug)]
+pub(super) struct Shape {
+    pub field: usize,
+    contours: Vec<Contour>,
+}
+
+impl Shape {
+    /// Its outline.
+    pub fn path(&self) -> BezPath {
+        let mut path = BezPath::new();
+        for contour in &self.contours {
+            path.move_to(contour[0]);
+            contour[1..].iter().for_each(|&p| path.line_to(p));
+            path.close_path();
+        }
+        path
+    }
+
+    pub fn area(&self) -> f64 {
+        area(&self.contours)
+    }
+}
+
+/// The shapes of every container that asks for them. False if the time ran out first.
+pub(super) fn shapes(
+    prepared: &Prepared,
+    placement: &Placement,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> (Vec<Shape>, bool) {
+    let mut all = Vec::new();
+    for (index, field) in prepared.fields.iter().enumerate() {
+        if field.params.fillers != "shapes" {
+            continue;
+        }
+        if !go_on(index as f64 / prepared.fields.len() as f64) {
+            return (all, false);
+        }
+        all.extend(of_field(field, placement).into_iter().map(|contours| Shape { field: index, contours }));
+    }
+    (all, true)
+}
+
+fn of_field(field: &Field, placement: &Placement) -> Vec<Vec<Contour>> {
+    let sizes = &field.sizes;
+    let reach = sizes.safe_gap() + placement.widest_stroke();
+    let bounds = field.region.bounds().inflate(reach, reach);
+    let near = placement.silhouettes.iter().filter(|contour| touches(contour, bounds));
+    let near: Vec<Contour> = near.cloned().collect();
+    let free = difference(field.region.contours(), &offset(&near, reach));
+    let round = ROUND * sizes.spacing;
+    let contours = offset(&offset(&free, -round), round);
+    let tolerance = 0.5 * sizes.tolerance();
+    let smooth = |contour: &Contour| polyline::simplified_closed(contour, tolerance);
+    let (outer, holes): (Vec<Contour>, Vec<Contour>) = contours.iter().map(smooth).partition(is_outer);
+    let least = SMALLEST * sizes.spacing * sizes.spacing;
+    let mut shapes: Vec<(Region, Vec<Contour>)> = outer
+        .into_iter()
+        .filter(|contour| contour.len() > 2 && signed_area(contour).abs() >= least)
+        .filter_map(|contour| Some((Region::new(vec![contour.clone()])?, vec![contour])))
+        .collect();
+    // From the smallest on, so that a hole goes to the innermost.
+    shapes.sort_by(|a, b| a.0.area().total_cmp(&b.0.area()));
+    for hole in holes {
+        if let Some(shape) = shapes.iter_mut().find(|shape| shape.0.contains(hole[0])) {
+            shape.1.push(hole);
+        }
+    }
+    shapes.into_iter().rev().map(|shape| shape.1).collect()
+}
+
+fn touches(contour: &[Point], bounds: Rect) -> bool {
+    contour.iter().any(|&p| bounds.contains(p))
+}
