@@ -54,17 +54,19 @@ pub fn gap_discs(scene: &Scene, artwork: &Artwork) -> Result<Vec<(Point, f64)>, 
 fn raster_of(scene: &Scene, artwork: &Artwork) -> Result<(Point, Raster), Error> {
     let shapes = Shapes::new(scene, &[])?;
     let cell = (shapes.bounds.area() / CELLS).sqrt().max(f64::MIN_POSITIVE);
-    let mut raster = Raster::new(shapes.bounds, cell);
+    // The cells around it are outside, so that its edge is known as one.
+    let bounds = shapes.bounds.inflate(cell, cell);
+    let mut raster = Raster::new(bounds, cell);
     for index in 0..shapes.containers.len() {
         if let Some(region) = shapes.free(index, 0.0, 0.0) {
-            raster.add_inside(shapes.bounds.origin(), region.contours());
+            raster.add_inside(bounds.origin(), region.contours());
         }
     }
     let drawn = artwork.groups.iter().filter(|group| !group.hidden && group.name != "fixed");
     for part in drawn.flat_map(|group| &group.items).flat_map(|item| artwork.shapes(item)) {
-        raster.add_ink(shapes.bounds.origin(), &area_of(&part, cell));
+        raster.add_ink(bounds.origin(), &area_of(&part, cell));
     }
-    Ok((shapes.bounds.origin(), raster))
+    Ok((bounds.origin(), raster))
 }
 
 /// What a part covers, as simple contours.
