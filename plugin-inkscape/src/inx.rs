@@ -321,6 +321,7 @@ fn help(generator: &Generator) -> &'static [&'static str] {
             "Leaves and flowers are clones: edit one in the layer's symbols, and all follow. For cutting and plotting choose copies, and one shape or lines for the stems.",
         ],
         "recurse" => &[
+            "Select a closed shape and press Apply: a built-in rosette fits into it.",
             "Draw a motif, clone it (Edit > Clone > Create Clone), and move, turn, scale, shear or mirror the clones. Group motif and clones, select the group and press Apply: every clone gets clones of its own, and so on.",
             "What lies on top in the group lies on top in every copy.",
             "Generations is how often it goes on; switch on Live preview and change the drawing.",
@@ -329,6 +330,7 @@ fn help(generator: &Generator) -> &'static [&'static str] {
             "Several groups may clone each other: mark each as form.",
         ],
         "arrange" => &[
+            "Select a closed shape and press Apply: a built-in pattern fills it.",
             "Draw some elements as they should be arranged, about five rows of five, group them, and mark the group as reference (Extensions > Ornament > Mark as). Those in the middle are copied; those around them show how they stand.",
             "Select a closed shape, or mark one as container, and press Apply: the example goes on over it.",
             "Repeated as a tile, the box around the shape fits its copies on all sides; the example is stretched a little so that whole rows go in.",

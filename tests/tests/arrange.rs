@@ -376,6 +376,23 @@ mod connectivity {
 }
 
 /// How like its example each sample is (checklist section 9's measures): see `measure`.
+/// Without an example, a built-in one fills the selected shape.
+#[test]
+fn a_shape_alone_is_filled() {
+    let done = rinceau(["arrange", "--id", "panel"])
+        .input(svg("<path id='panel' d='M20,100C20,20 180,20 180,100S20,180 20,100Z' fill='#eeeeee'/>"))
+        .succeed();
+    let xml = support::parse(done.text());
+    let elements = support::elements(support::layers(&xml)[0]);
+    assert!(elements.len() > 100, "{}", elements.len());
+    // What clones refer to is in the layer itself.
+    for element in elements {
+        let href = element.attribute(("http://www.w3.org/1999/xlink", "href")).unwrap();
+        support::by_id(&xml, &href[1..]);
+    }
+    assert!(rinceau(["update"]).input(done.text()).succeed().text() == done.text());
+}
+
 #[test]
 fn samples_are_like_their_examples() {
     for path in samples_of("arrange") {
@@ -419,7 +436,7 @@ mod refused {
 
     #[test]
     fn without_an_example() {
-        insta::assert_snapshot!(refusal(CIRCLE, &[]), @"rinceau: There is no example to continue. Group some elements as they should be arranged, and mark the group as reference (Extensions > Ornament > Mark as). [no-reference]");
+        insta::assert_snapshot!(refusal("", &[]), @"rinceau: There is no example to continue. Group some elements as they should be arranged, and mark the group as reference (Extensions > Ornament > Mark as). [no-reference]");
     }
 
     /// One, two or three elements, all on a line, all in one place, an empty group.

@@ -598,3 +598,34 @@ fn a_chain_of_clones_grows_with_the_depth_alone() {
     let (twenty, forty) = (size(20), size(40));
     assert!(forty - twenty < 20 * 600, "{} bytes for 20 generations", forty - twenty);
 }
+
+/// Without a form, a rosette goes into the selected shape, and not over its outline.
+#[test]
+fn a_shape_alone_is_filled() {
+    let drawing = support::svg("<path id='panel' d='M20,20H180L100,180Z' fill='#eeeeee'/>");
+    let done = support::rinceau(["recurse", "--id", "panel"]).input(drawing.as_str()).succeed();
+    let (_, scene) = support::geometry::read(drawing.replace("id='panel'", "class='rinceau-container'"));
+    let container = rinceau::geom::region::Region::new(support::geometry::contours(
+        &scene.containers[0].outlines[0].path,
+    ))
+    .unwrap();
+    let artwork = support::geometry::generated("recurse", &scene, &[], 1).unwrap();
+    let written = support::geometry::written(
+        &support::geometry::read(drawing.clone()).0,
+        &artwork,
+        ("recurse", &[], 1),
+    );
+    let xml = support::parse(written.text());
+    let pieces = xml.descendants().filter(|node| node.has_attribute((support::RINCEAU, "of")));
+    let pieces: Vec<_> = pieces.collect();
+    assert!(pieces.len() > 5, "{}", pieces.len());
+    for piece in pieces {
+        let path = kurbo::BezPath::from_svg(piece.attribute("d").unwrap()).unwrap();
+        for contour in support::geometry::contours(&path) {
+            assert!(contour.iter().all(|&p| container.contains(p)), "{:?}", piece.attribute("id"));
+        }
+    }
+    assert!(support::rinceau(["update"]).input(done.text()).succeed().text() == done.text());
+    let clones = support::rinceau(["recurse", "--id", "panel", "--output", "clones"]).input(drawing).done();
+    assert!(clones.code == Some(1) && clones.stderr.contains("[no-form]"));
+}

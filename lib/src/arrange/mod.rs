@@ -17,12 +17,15 @@
 //! direction field of the house, which knows walls, with the sense of the neighbours. Where a ring
 //! fits nowhere see `grow`.
 //!
+//! Where no example is drawn, a built-in one fills the shapes (`builtin`).
+//!
 //! Beyond the paper: the neighbours' own rings count in the comparison (E-060, `ring`); where errors
 //! gather elements are chosen again (E-062, `Arrangement::mend`); elements keep apart by their outlines
 //! (E-063, `extent`, `part`); patterns repeat as tiles; the example's connectivity is drawn, and edges are
 //! flipped there (`connect`); numbers say how like its example a result is (`measure`).
 
 mod artwork;
+mod builtin;
 pub mod connect;
 mod example;
 mod extent;
@@ -73,10 +76,14 @@ pub fn generate(
     progress: &mut dyn Progress,
 ) -> Result<Artwork, Error> {
     progress.step("prepare", 0.0);
+    let mut scene = with_sprays(scene);
     if scene.references.is_empty() {
-        return Err(no_reference());
+        if scene.containers.is_empty() {
+            return Err(no_reference());
+        }
+        scene = builtin::with_example(&scene)?;
     }
-    let scene = &with_sprays(scene);
+    let scene = &scene;
     let mut artwork = Artwork { complete: true, warnings: scene.warnings.clone(), ..Artwork::default() };
     let analyses: Vec<Analysis> = scene
         .references

@@ -14,8 +14,10 @@
 //! shape as primitive, primitives of the last or the inner generations alone, a smallest size.
 //!
 //! Departures: the paper's limit is the machine of 1990; here a count that is known beforehand.
-//! A form may be fitted into a container, so that a motif can be drawn beside its form.
+//! A form may be fitted into a container, so that a motif can be drawn beside its form. Into a container
+//! without any form goes a built-in one (`builtin`).
 
+mod builtin;
 mod clones;
 mod colour;
 mod expand;
@@ -51,6 +53,9 @@ const LONGEST_CHAIN: usize = 300;
 
 /// The forms of a scene that are drawn for their own sake.
 pub fn sources(scene: &Scene) -> Vec<&Source> {
+    if scene.forms.is_empty() {
+        return scene.containers.iter().map(|container| &container.source).collect();
+    }
     scene.forms.iter().filter(|form| form.is_root).map(|form| &form.source).collect()
 }
 
@@ -64,12 +69,12 @@ pub fn generate(
     progress: &mut dyn Progress,
 ) -> Result<Artwork, Error> {
     progress.step("prepare", 0.0);
-    if scene.forms.is_empty() {
-        return Err(Error::new(
-            "no-form",
-            "The drawing has no form",
-            "Group a motif with clones of it (Edit > Clone > Create Clone), then select the group or mark it as form",
-        ));
+    let built_in;
+    let mut scene = scene;
+    let is_built_in = scene.forms.is_empty();
+    if is_built_in {
+        built_in = builtin::with_form(params, scene)?;
+        scene = &built_in;
     }
     let lists = Arc::new(Lists::new(&scene.forms));
     let mut artwork = Artwork {
@@ -116,6 +121,10 @@ pub fn generate(
         }
         let run = Run { params: &own, scene, lists: of_run, root, form, frame, name };
         run.draw(&mut artwork, progress)?;
+    }
+    if is_built_in {
+        // It is no object that could be taken up again.
+        artwork.steps.clear();
     }
     Ok(artwork)
 }
