@@ -90,7 +90,7 @@ impl<'a, 'i> Content<'a, 'i> {
                 self.look(node, Some(index), false);
             } else if let Some(index) = group.filter(|&index| is_chunk(own, self.groups[index].name)) {
                 self.look(node, Some(index), node.plain("transform").is_some());
-            } else if !self.is_ours(node, own) {
+            } else if !self.is_ours(node, own, group.is_none()) {
                 let has_pieces = node.descendants().any(|node| self.piece(self.own(node)).is_some());
                 self.foreign.push(Foreign { group, node, has_pieces });
             }
@@ -112,10 +112,11 @@ impl<'a, 'i> Content<'a, 'i> {
         entry.is_some().then_some((index, number))
     }
 
-    /// True for what belongs to a layer and is no piece. Without a record, marks and ids say so.
-    fn is_ours(&self, node: Node, own: &str) -> bool {
+    /// True for what belongs to a layer and is no piece. Without a record, marks and ids say so; a whole
+    /// sublayer is told by its id.
+    fn is_ours(&self, node: Node, own: &str, is_sublayer: bool) -> bool {
         let is_old = self.groups.is_empty() && (!own.is_empty() || node.has_attribute((NAMESPACE, "of")));
-        is_record(&node) || own == "symbols" || is_old
+        is_record(&node) || is_old || is_sublayer && !own.is_empty()
     }
 
     /// Every piece that was made: sublayer, number, and how.

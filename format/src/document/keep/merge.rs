@@ -83,21 +83,27 @@ impl Plan {
         let map = Map::of(&before, &entries);
         let near = Near::of(&entries);
         let of = |node: Node| node.attribute((NAMESPACE, "of")).map(str::to_owned);
-        // Another kind of piece would have to stand three times as near.
+        // The piece itself comes first. Another kind of piece would have to stand three times as near.
         let apart = |edit: &Edit, piece: usize, distance: f64| {
-            let (group, number, _) = pieces[piece];
+            let (group, number, entry) = pieces[piece];
+            if entry.shape == edit.made.shape {
+                return 0.0;
+            }
             let is_other = edit.node.is_some_and(|node| {
                 new.pieces.get(&(group, number)).is_some_and(|found| of(found.0) != of(node))
             });
+            let distance = distance + 0.5 * (entry.reach - edit.made.reach).abs();
             if is_other { 3.0 * distance } else { distance }
         };
-        let mut offers: Vec<(f64, usize, usize)> = Vec::new();
+        let mut offers: Vec<(f64, bool, usize, usize)> = Vec::new();
         for (e, edit) in edits.iter().enumerate() {
             let Some(group) = indices[edit.group] else { continue };
             let found = near.at(group, &map.moved(&edit.made));
-            offers.extend(found.map(|(piece, distance)| (apart(edit, piece, distance), e, piece)));
+            offers.extend(found.map(|(piece, distance)| {
+                (apart(edit, piece, distance), pieces[piece].1 != edit.number, e, piece)
+            }));
         }
-        offers.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        offers.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2, a.3).cmp(&(b.1, b.2, b.3))));
         let mut plan = Plan {
             edit_of: vec![None; pieces.len()],
             piece_of: vec![None; edits.len()],
@@ -105,7 +111,7 @@ impl Plan {
             pieces,
             map,
         };
-        for (_, e, piece) in offers {
+        for (_, _, e, piece) in offers {
             if plan.edit_of[piece].is_none() && plan.piece_of[e].is_none() {
                 plan.give(e, piece);
             }
@@ -234,7 +240,8 @@ impl Merge<'_, '_, '_> {
             };
             let element = &self.document.text[old.range()];
             let mut tag = element[..start_tag_end(element).0].to_owned();
-            if old.lookup_namespace_uri(Some("xlink")) != Some(XLINK) {
+            let new_tag = &self.text[range.start..range.start + start_tag_end(&self.text[range.clone()]).0];
+            if new_tag.contains(" xmlns:xlink=") && old.lookup_namespace_uri(Some("xlink")) != Some(XLINK) {
                 attribute(&mut tag, "xmlns:xlink", XLINK);
             }
             let end = range.start + start_tag_end(&self.text[range.clone()]).0;
@@ -334,7 +341,8 @@ impl Merge<'_, '_, '_> {
             let name = namespace.name().map_or("xmlns".to_owned(), |name| format!("xmlns:{name}"));
             let is_known = self.layer.lookup_namespace_uri(namespace.name()) == Some(namespace.uri());
             let is_known = is_known || sublayer.contains(&format!(" {name}=\"{}\"", namespace.uri()));
-            if !is_known && !object[..tag_end].contains(&format!(" {name}=")) {
+            let is_used = namespace.name().is_none_or(|prefix| object.contains(&format!("{prefix}:")));
+            if !is_known && is_used && !object[..tag_end].contains(&format!(" {name}=")) {
                 attribute(&mut declared, &name, namespace.uri());
             }
         }
