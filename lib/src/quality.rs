@@ -1,11 +1,11 @@
 //! How evenly an ornament fills its shapes: the measures of RepulsionPak and FLOWPAK's kin, on a
 //! raster.
 //!
-//! Let C be the containers, E what is drawn, and r a radius. SCP(r) is the share of C from which
+//! Let C be the containers, E what is drawn (with the holes that are cut out of it), and r a radius. SCP(r) is the share of C from which
 //! a disc of radius r fits between the pieces. Gaps that are channels of one width give a
 //! straight line down to zero; how near SCP comes to that line is `evenness`.
 
-use crate::geom::boolean::{Contour, simplified, stroked};
+use crate::geom::boolean::{Contour, area, is_outer, signed_area, simplified, stroked};
 use crate::geom::distance::{cover, squared_distances};
 use crate::geom::flatten::flatten;
 use crate::shapes::Shapes;
@@ -69,7 +69,7 @@ fn raster_of(scene: &Scene, artwork: &Artwork) -> Result<(Point, Raster), Error>
     Ok((bounds.origin(), raster))
 }
 
-/// What a part covers, as simple contours.
+/// What a part covers, as simple contours, with the small holes in it.
 fn area_of(part: &Part, cell: f64) -> Vec<Contour> {
     let scale = part.transform.determinant().abs().sqrt();
     let subpaths = flatten(&(part.transform * part.path.clone()), 0.2 * cell);
@@ -82,7 +82,14 @@ fn area_of(part: &Part, cell: f64) -> Vec<Contour> {
     for subpath in &subpaths {
         contours.extend(stroked(&subpath.points, subpath.closed, width));
     }
-    if width > 0.0 { simplified(&contours, false) } else { contours }
+    if width > 0.0 {
+        contours = simplified(&contours, false);
+    }
+    // Veins and eyes that are cut out of a leaf belong to it; what a stem winds around does not.
+    const OWN: f64 = 0.5;
+    let ink = area(&contours);
+    contours.retain(|contour| is_outer(contour) || signed_area(contour).abs() > OWN * ink);
+    contours
 }
 
 impl Raster {
