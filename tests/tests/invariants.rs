@@ -133,6 +133,16 @@ fn every_sample_keeps_its_promises() {
     }
 }
 
+/// A guide that lies in a hole, near enough to the edge to count, gives no flow: the outline does.
+#[test]
+fn a_guide_that_just_misses_the_region_is_no_flow() {
+    let (_, scene) = read(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 400 400'><path class='rinceau-container' fill-rule='evenodd' d='M50,200A150,150 0 1 1 350,200A150,150 0 1 1 50,200ZM147.5,200A52.5,52.5 0 1 1 252.5,200A52.5,52.5 0 1 1 147.5,200Z'/><path class='rinceau-guide' d='M242.5,220Q242.5,191.5 163.2,207.5' fill='none'/></svg>",
+    );
+    let artwork = pack(&scene, &[("spacing", "24".to_owned())], 1).unwrap();
+    assert!(artwork.counts["elements"] > 20.0);
+}
+
 /// Every piece of a mirrored composition has its image, and all promises hold across the axis.
 #[test]
 fn mirrored_halves_are_alike_and_keep_apart() {

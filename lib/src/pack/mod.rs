@@ -39,6 +39,7 @@ pub use params::Params;
 use crate::field::DirectionField;
 use crate::progress::Progress;
 use crate::rng::Rng;
+use crate::shapes::closed;
 use artwork::Made;
 use blob::Blob;
 use place::Placement;
@@ -136,7 +137,13 @@ fn rooms(
     for (index, (field, usable)) in prepared.fields.iter().zip(usable).enumerate() {
         complete &= progress.step("field", index as f64 / prepared.fields.len() as f64);
         let cell = (field.sizes.spacing / 4.0).min(prepared.input_size / CELLS);
-        let Some(flow) = DirectionField::new(&field.region, &field.guides, cell) else {
+        // A guide that just misses the region gives no flow; then the boundary does.
+        let along_boundary = || {
+            let boundary: Vec<_> = field.region.contours().iter().map(closed).collect();
+            DirectionField::new(&field.region, &boundary, cell)
+        };
+        let flow = DirectionField::new(&field.region, &field.guides, cell).or_else(along_boundary);
+        let Some(flow) = flow else {
             flows.push(None);
             continue;
         };
