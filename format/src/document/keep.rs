@@ -4,6 +4,7 @@
 mod held;
 mod merge;
 mod near;
+mod plan;
 
 use crate::vocabulary::{INKSCAPE, NAMESPACE, SODIPODI};
 use crate::write::record::{Entries, Entry, digests, paint_of, read_entries};
