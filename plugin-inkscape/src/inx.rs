@@ -30,37 +30,21 @@ pub struct Picture {
     pub content: &'static [u8],
 }
 
+const fn picture(
+    generator: &'static str,
+    title: &'static str,
+    name: &'static str,
+    content: &'static [u8],
+) -> Picture {
+    Picture { generator, title, name, content }
+}
+
 pub const PICTURES: [Picture; 5] = [
-    Picture {
-        generator: "grow",
-        title: "Patterns",
-        name: "grow-patterns.png",
-        content: include_bytes!("../inx/grow-patterns.png"),
-    },
-    Picture {
-        generator: "grow",
-        title: "Styles",
-        name: "grow-styles.png",
-        content: include_bytes!("../inx/grow-styles.png"),
-    },
-    Picture {
-        generator: "pack",
-        title: "Pictures",
-        name: "pack-choices.png",
-        content: include_bytes!("../inx/pack-choices.png"),
-    },
-    Picture {
-        generator: "vine",
-        title: "Pictures",
-        name: "vine-choices.png",
-        content: include_bytes!("../inx/vine-choices.png"),
-    },
-    Picture {
-        generator: "arrange",
-        title: "Pictures",
-        name: "arrange-choices.png",
-        content: include_bytes!("../inx/arrange-choices.png"),
-    },
+    picture("grow", "Patterns", "grow-patterns.png", include_bytes!("../inx/grow-patterns.png")),
+    picture("grow", "Styles", "grow-styles.png", include_bytes!("../inx/grow-styles.png")),
+    picture("pack", "Pictures", "pack-choices.png", include_bytes!("../inx/pack-choices.png")),
+    picture("vine", "Pictures", "vine-choices.png", include_bytes!("../inx/vine-choices.png")),
+    picture("arrange", "Pictures", "arrange-choices.png", include_bytes!("../inx/arrange-choices.png")),
 ];
 
 /// Roles in the menu, with what the menu calls them.

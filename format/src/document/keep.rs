@@ -6,10 +6,12 @@ mod merge;
 mod near;
 mod plan;
 
+use super::Document;
+use crate::error::Error;
 use crate::vocabulary::{INKSCAPE, NAMESPACE, SODIPODI};
-use crate::write::record::{Entries, Entry, digests, paint_of, read_entries};
+use crate::write::record::{Entries, Entry, digests, paint_of, read_entries, wrapper};
 use crate::xml::PlainAttribute;
-use roxmltree::Node;
+use roxmltree::{Node, ParsingOptions};
 use std::collections::HashMap;
 
 pub use held::Held;
@@ -206,6 +208,16 @@ impl Made<'_, '_> {
             || node.attribute((INKSCAPE, "label")) != Some(self.name)
             || paint(node.plain("style").unwrap_or("")) != paint(self.style)
     }
+}
+
+/// The content of a layer, in a root that stands for the layer, to be parsed by itself.
+fn wrapped(svg_prefix: &str, id: &str, content: &str) -> String {
+    format!("{}{content}</root>", wrapper(svg_prefix, id))
+}
+
+fn parsed<'t>(document: &Document, wrapped: &'t str) -> Result<roxmltree::Document<'t>, Error> {
+    let options = ParsingOptions { nodes_limit: u32::MAX, ..ParsingOptions::default() };
+    roxmltree::Document::parse_with_options(wrapped, options).map_err(|error| document.xml_error(&error))
 }
 
 fn is_record(node: &Node) -> bool {

@@ -84,6 +84,29 @@ impl Region {
         self.edges.ray(at, along, reach)
     }
 
+    /// The largest circle in it, to a hundredth of its size: middle and radius.
+    pub fn largest_circle(&self) -> (Point, f64) {
+        const STEPS: i32 = 40;
+        let reach = self.bounds.size().max_side();
+        let room = |at: Point| if self.contains(at) { self.distance(at, reach) } else { 0.0 };
+        let mut best = (self.bounds.center(), room(self.bounds.center()));
+        let mut around = self.bounds;
+        // On a grid, and on a finer one about the best of it.
+        for _ in 0..3 {
+            for (i, j) in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| (i, j))) {
+                let share = |k: i32| (f64::from(k) + 0.5) / f64::from(STEPS);
+                let at = around.origin() + Vec2::new(share(i) * around.width(), share(j) * around.height());
+                let here = room(at);
+                if here > best.1 {
+                    best = (at, here);
+                }
+            }
+            let side = 3.0 / f64::from(STEPS);
+            around = Rect::from_center_size(best.0, (side * around.width(), side * around.height()));
+        }
+        best
+    }
+
     /// The boundary's edges.
     pub fn edges(&self) -> &SegmentGrid {
         &self.edges
@@ -93,6 +116,14 @@ impl Region {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_largest_circle_touches_the_outline() {
+        let triangle = [(0.0, 0.0), (30.0, 0.0), (0.0, 40.0)].map(Point::from).to_vec();
+        let (centre, radius) = Region::new(vec![triangle]).unwrap().largest_circle();
+        let is_there = centre.distance(Point::new(10.0, 10.0)) < 0.2;
+        assert!((radius - 10.0).abs() < 0.1 && is_there, "{centre} {radius}");
+    }
 
     #[test]
     fn inside_distance_and_ray_know_holes() {

@@ -1,17 +1,16 @@
 //! What a generator has to keep clear of when it makes a layer again: the pieces of the old one that
 //! stay where an artist put them.
 
-use super::{Change, Content, Edits};
+use super::{Change, Content, Edits, parsed, wrapped};
 use crate::artwork::Artwork;
 use crate::document::Document;
 use crate::document::edit::{splice, start_tag_end, tag_name};
 use crate::error::Error;
 use crate::vocabulary::NAMESPACE;
-use crate::write::record::wrapper;
 use crate::write::{self, Sink, attribute};
 use crate::xml::PlainAttribute;
 use kurbo::{Point, Rect};
-use roxmltree::{Node, ParsingOptions};
+use roxmltree::Node;
 use std::collections::HashSet;
 use std::fmt::Write;
 
@@ -90,10 +89,8 @@ impl Document {
             self.within_layer(xml, layer, id, |target| {
                 let mut sink = Sink::default();
                 write::content(&mut sink, artwork, target);
-                let text = format!("{}{}</root>", wrapper(target.svg_prefix, id), sink.text);
-                let options = ParsingOptions { nodes_limit: u32::MAX, ..ParsingOptions::default() };
-                let xml = roxmltree::Document::parse_with_options(&text, options)
-                    .map_err(|error| self.xml_error(&error))?;
+                let text = wrapped(target.svg_prefix, id, &sink.text);
+                let xml = parsed(self, &text)?;
                 let old = Content::of(layer);
                 let known: HashSet<(&str, u32)> =
                     old.made().map(|(group, _, entry)| (old.groups[group].name, entry.shape)).collect();
@@ -137,7 +134,8 @@ impl Document {
 }
 
 impl<'a, 'i> Edits<'a, 'i> {
-    /// Objects that new pieces have to keep clear of: pieces that stay and groups of them, but none that is hidden, and none that spans the ornament, as a vine's stems do.
+    /// Objects that new pieces have to keep clear of: pieces that stay and groups of them, but none that is
+    /// hidden, and none that spans the ornament, as a vine's stems do.
     fn obstacles(&self) -> Vec<Node<'a, 'i>> {
         let content = &self.content;
         let entries = content.groups.iter().flat_map(|made| made.entries.iter().flatten());

@@ -1,17 +1,15 @@
 //! The content of a layer made again, with what an artist did to the old one.
 
 use super::plan::Plan;
-use super::{Change, Content, Edits, Made};
+use super::{Change, Content, Edits, Made, parsed, wrapped};
 use crate::document::Document;
 use crate::document::edit::{splice, start_tag_end, tag_name};
 use crate::error::Error;
 use crate::vocabulary::XLINK;
 use crate::write::attribute;
-use crate::write::record::{
-    Entries, Entry, MOST_REMEMBERED, paints_of, record_decimals, wrapper, write_entries,
-};
+use crate::write::record::{Entries, Entry, MOST_REMEMBERED, paints_of, record_decimals, write_entries};
 use crate::xml::PlainAttribute;
-use roxmltree::{Node, ParsingOptions};
+use roxmltree::Node;
 use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
 
@@ -24,11 +22,8 @@ pub(in crate::document) fn merged(
     edits: &Edits,
     (content, svg_prefix, decimals): (&str, &str, usize),
 ) -> Result<String, Error> {
-    let head = wrapper(svg_prefix, edits.content.id);
-    let text = format!("{head}{content}</root>");
-    let options = ParsingOptions { nodes_limit: u32::MAX, ..ParsingOptions::default() };
-    let xml = roxmltree::Document::parse_with_options(&text, options)
-        .map_err(|error| document.xml_error(&error))?;
+    let text = wrapped(svg_prefix, edits.content.id, content);
+    let xml = parsed(document, &text)?;
     let new = Content::of(xml.root_element());
     if new.groups.is_empty() {
         return Err(Error::new(
@@ -46,7 +41,7 @@ pub(in crate::document) fn merged(
         edits,
         new: &new,
         text: &text,
-        head: head.len(),
+        head: text.len() - content.len() - "</root>".len(),
         gone: gone(edits),
         splices: Vec::new(),
     };
