@@ -17,6 +17,7 @@ pub mod field;
 pub mod generate;
 pub mod geom;
 pub mod grow;
+mod ink;
 pub mod pack;
 pub mod palette;
 pub mod params;

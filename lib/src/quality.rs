@@ -5,12 +5,12 @@
 //! a disc of radius r fits between the pieces. Gaps that are channels of one width give a
 //! straight line down to zero; how near SCP comes to that line is `evenness`.
 
-use crate::geom::boolean::{Contour, area, is_outer, signed_area, simplified, stroked};
-use crate::geom::distance::{cover, squared_distances};
-use crate::geom::flatten::flatten;
+use crate::geom::boolean::{Contour, area, is_outer, signed_area, simplified};
+use crate::geom::distance::{cover, nearest_marked, runs, squared_distances};
+use crate::ink::area_of;
 use crate::shapes::Shapes;
 use kurbo::{Point, Rect};
-use rinceau_format::{Artwork, Error, FillRule, Part, Scene};
+use rinceau_format::{Artwork, Error, Part, Scene};
 use std::collections::BTreeMap;
 
 /// Cells of the raster, about.
@@ -21,16 +21,29 @@ pub struct Raster {
     /// Side of a cell.
     pub cell: f64,
     columns: usize,
+    /// The containers.
+    whole: Vec<bool>,
+    /// What is not fixed in them.
     inside: Vec<bool>,
     ink: Vec<bool>,
+    /// Which piece each cell of ink belongs to.
+    owner: Vec<u32>,
+    pieces: u32,
+    /// How often a piece covers a cell of another.
+    doubled: usize,
 }
 
 /// Measures an artwork by name:
 /// `coverage`, share of the containers that is drawn on;
 /// `mean_gap`, twice the mean distance in the gaps: half their width, if they are channels;
 /// `largest_gap`, radius of the largest empty disc over `mean_gap` (1 is perfect);
-/// `gap_cv`, coefficient of variation of gap widths along their middle;
-/// `boundary`, share of the outline that has something drawn within `mean_gap`;
+/// `gap_cv`, coefficient of variation of gap widths, where two different pieces, or a piece and
+/// the outline, are equally near;
+/// `boundary`, share of the containers' outline that has something drawn or fixed within a gap of it (twice
+/// `mean_gap`);
+/// `overlap` and `spill`, area drawn on twice and outside of the containers, over their area;
+/// `grown_overlap`, OF at half the mean gap: what overlaps if every piece grows by half of `mean_gap` (0
+/// unless gaps are narrower than half the mean);
 /// `evenness`, 1 for gaps of one width everywhere, less for any other.
 ///
 /// Errors: a container that cannot be read; there is nothing to measure in.
@@ -61,35 +74,25 @@ fn raster_of(scene: &Scene, artwork: &Artwork) -> Result<(Point, Raster), Error>
         if let Some(region) = shapes.free(index, 0.0, 0.0) {
             raster.add_inside(bounds.origin(), region.contours());
         }
+        cover(&shapes.containers[index], bounds.origin(), cell, raster.columns, &mut raster.whole);
     }
     let drawn = artwork.groups.iter().filter(|group| !group.hidden && group.name != "fixed");
-    for part in drawn.flat_map(|group| &group.items).flat_map(|item| artwork.shapes(item)) {
-        raster.add_ink(bounds.origin(), &area_of(&part, cell));
+    for item in drawn.flat_map(|group| &group.items) {
+        let areas: Vec<Vec<Contour>> = artwork.shapes(item).iter().map(|part| filled(part, cell)).collect();
+        raster.add_piece(bounds.origin(), &areas);
     }
     Ok((bounds.origin(), raster))
 }
 
-/// What a part covers, as simple contours, with the small holes in it.
-fn area_of(part: &Part, cell: f64) -> Vec<Contour> {
-    let scale = part.transform.determinant().abs().sqrt();
-    let subpaths = flatten(&(part.transform * part.path.clone()), 0.2 * cell);
-    let mut contours = Vec::new();
-    if part.style.is_filled() {
-        contours.extend(subpaths.iter().map(|subpath| subpath.points.clone()));
-        contours = simplified(&contours, part.style.fill_rule() == FillRule::EvenOdd);
-    }
-    let width = part.style.stroke_width().unwrap_or(0.0) * scale;
-    for subpath in &subpaths {
-        contours.extend(stroked(&subpath.points, subpath.closed, width));
-    }
-    if width > 0.0 {
-        contours = simplified(&contours, false);
-    }
+/// What a part covers, with the small holes in it.
+fn filled(part: &Part, cell: f64) -> Vec<Contour> {
+    let mut contours = area_of(part, 0.2 * cell);
     // Veins and eyes that are cut out of a leaf belong to it; what a stem winds around does not.
     const OWN: f64 = 0.5;
     let ink = area(&contours);
     contours.retain(|contour| is_outer(contour) || signed_area(contour).abs() > OWN * ink);
-    contours
+    // An island in such a hole lies in what is covered now.
+    simplified(&contours, false)
 }
 
 impl Raster {
@@ -97,30 +100,53 @@ impl Raster {
     pub fn new(bounds: Rect, cell: f64) -> Self {
         let count = |side: f64| (side / cell).ceil() as usize + 1;
         let (columns, rows) = (count(bounds.width()), count(bounds.height()));
-        Raster { cell, columns, inside: vec![false; columns * rows], ink: vec![false; columns * rows] }
+        let cells = columns * rows;
+        Raster {
+            cell,
+            columns,
+            whole: vec![false; cells],
+            inside: vec![false; cells],
+            ink: vec![false; cells],
+            owner: vec![0; cells],
+            pieces: 0,
+            doubled: 0,
+        }
     }
 
     fn add_inside(&mut self, origin: Point, contours: &[Contour]) {
         cover(contours, origin, self.cell, self.columns, &mut self.inside);
     }
 
-    fn add_ink(&mut self, origin: Point, contours: &[Contour]) {
-        cover(contours, origin, self.cell, self.columns, &mut self.ink);
+    /// Adds a piece of ink, part by part.
+    fn add_piece(&mut self, origin: Point, parts: &[Vec<Contour>]) {
+        self.pieces += 1;
+        for contours in parts {
+            runs(contours, origin, self.cell, (self.columns, self.ink.len()), |run| {
+                let others =
+                    self.owner[run.clone()].iter().filter(|&&owner| owner != 0 && owner != self.pieces);
+                self.doubled += others.count();
+                self.ink[run.clone()].fill(true);
+                self.owner[run].fill(self.pieces);
+            });
+        }
     }
 
     /// Distance to what is drawn or outside, of every cell in a gap.
     fn gaps(&self) -> (Vec<f64>, Vec<f64>) {
         let taken: Vec<bool> =
             self.inside.iter().zip(&self.ink).map(|(&inside, &ink)| ink || !inside).collect();
-        let squared = squared_distances(&taken, self.columns);
+        let (squared, nearest) = nearest_marked(&taken, self.columns);
         // Half a cell lies between the middle of the nearest taken cell and its edge.
         let distance = |i: usize| (squared[i].sqrt() - 0.5).max(0.0) * self.cell;
         let in_gap: Vec<usize> = (0..taken.len()).filter(|&i| !taken[i]).collect();
         let all = in_gap.iter().map(|&i| distance(i)).collect();
-        // The middle of a gap: nowhere near it is farther from its sides.
-        let around = |i: usize| [i.wrapping_sub(1), i + 1, i.wrapping_sub(self.columns), i + self.columns];
+        // The middle of a gap: where the nearest piece changes. What lies between two parts of one piece,
+        // a notch of a leaf or the turns of a spiral, is no gap between pieces.
+        let owner = |i: usize| if self.ink[nearest[i]] { self.owner[nearest[i]] } else { 0 };
         let is_middle = |&&i: &&usize| {
-            around(i).into_iter().all(|j| squared.get(j).is_none_or(|&other| other <= squared[i]))
+            [i + 1, i + self.columns]
+                .into_iter()
+                .any(|j| taken.get(j) == Some(&false) && owner(i) != owner(j))
         };
         let middle = in_gap.iter().filter(is_middle).map(|&i| distance(i)).collect();
         (all, middle)
@@ -160,17 +186,51 @@ impl Raster {
         discs
     }
 
-    /// Share of the cells along the outline that are no farther than this from what is drawn.
+    /// Share of the cells along the outline that are no farther than this from what is drawn or fixed.
     fn bordered(&self, reach: f64) -> f64 {
-        let outside = |i: usize| self.inside.get(i).is_none_or(|inside| !inside);
+        let outside = |i: usize| self.whole.get(i).is_none_or(|whole| !whole);
         let on_outline = |&i: &usize| {
             let around = [i.wrapping_sub(1), i + 1, i.wrapping_sub(self.columns), i + self.columns];
-            self.inside[i] && around.into_iter().any(outside)
+            self.whole[i] && around.into_iter().any(outside)
         };
-        let outline: Vec<usize> = (0..self.inside.len()).filter(on_outline).collect();
-        let squared = squared_distances(&self.ink, self.columns);
+        let outline: Vec<usize> = (0..self.whole.len()).filter(on_outline).collect();
+        let is_drawn = |i: usize| self.ink[i] || self.whole[i] && !self.inside[i];
+        let drawn: Vec<bool> = (0..self.whole.len()).map(is_drawn).collect();
+        let squared = squared_distances(&drawn, self.columns);
         let near = outline.iter().filter(|&&i| (squared[i].sqrt() - 0.5) * self.cell <= reach).count();
         near as f64 / (outline.len() as f64).max(1.0)
+    }
+
+    /// Cells drawn on outside of the containers.
+    fn spilt(&self) -> usize {
+        self.ink.iter().zip(&self.whole).filter(|&(&ink, &whole)| ink && !whole).count()
+    }
+
+    /// OF(r): how much pieces that all grow by `r` overlap in the containers, over the area of these.
+    fn overlap_of_grown(&self, r: f64) -> f64 {
+        let rows = self.ink.len() / self.columns;
+        // Columns and rows of every piece, from and to.
+        let mut boxes = vec![[usize::MAX, 0, usize::MAX, 0]; self.pieces as usize + 1];
+        for (i, &owner) in self.owner.iter().enumerate().filter(|(i, _)| self.ink[*i]) {
+            let (x, y) = (i % self.columns, i / self.columns);
+            let [x0, x1, y0, y1] = &mut boxes[owner as usize];
+            (*x0, *x1, *y0, *y1) = ((*x0).min(x), (*x1).max(x), (*y0).min(y), (*y1).max(y));
+        }
+        let reach = (r / self.cell).ceil() as usize + 1;
+        let mut covered = vec![0u32; self.ink.len()];
+        for (piece, [x0, x1, y0, y1]) in boxes.into_iter().enumerate().filter(|(_, b)| b[0] <= b[1]) {
+            let (x0, y0) = (x0.saturating_sub(reach), y0.saturating_sub(reach));
+            let (x1, y1) = ((x1 + reach).min(self.columns - 1), (y1 + reach).min(rows - 1));
+            let cells = || (y0..=y1).flat_map(|y| (x0..=x1).map(move |x| y * self.columns + x));
+            let own: Vec<bool> = cells().map(|i| self.ink[i] && self.owner[i] == piece as u32).collect();
+            let squared = squared_distances(&own, x1 - x0 + 1);
+            for (i, squared) in cells().zip(squared) {
+                covered[i] += u32::from((squared.sqrt() - 0.5) * self.cell < r);
+            }
+        }
+        let more = |i: usize| if self.inside[i] { f64::from(covered[i].saturating_sub(1)) } else { 0.0 };
+        let inside = self.inside.iter().filter(|&&inside| inside).count();
+        (0..covered.len()).map(more).sum::<f64>() / (inside as f64).max(1.0)
     }
 
     /// The measures.
@@ -189,7 +249,10 @@ impl Raster {
             ("mean_gap".to_owned(), half_width),
             ("largest_gap".to_owned(), share(largest, half_width)),
             ("gap_cv".to_owned(), share(spread, middle)),
-            ("boundary".to_owned(), self.bordered(half_width)),
+            ("boundary".to_owned(), self.bordered(2.0 * half_width)),
+            ("overlap".to_owned(), self.doubled as f64 / inside.max(1.0)),
+            ("spill".to_owned(), self.spilt() as f64 / inside.max(1.0)),
+            ("grown_overlap".to_owned(), self.overlap_of_grown(0.5 * half_width)),
             ("evenness".to_owned(), evenness(&distances, half_width, largest)),
         ])
     }
@@ -228,10 +291,11 @@ mod tests {
         let (a, g) = (20.0, 8.0);
         let mut raster = Raster::new(Rect::new(0.0, 0.0, 560.0, 560.0), 0.25);
         raster.add_inside(Point::ORIGIN, &[square(0.0, 0.0, 560.0)]);
+        raster.whole = raster.inside.clone();
         for row in 0..20 {
             for column in 0..20 {
                 let at = |i: i32| f64::from(i) * (a + g) + g / 2.0;
-                raster.add_ink(Point::ORIGIN, &[square(at(column), at(row), a)]);
+                raster.add_piece(Point::ORIGIN, &[vec![square(at(column), at(row), a)]]);
             }
         }
         let (distances, _) = raster.gaps();
@@ -241,7 +305,26 @@ mod tests {
             // The border of the lattice is a wall too: half a gap wide, it takes a little more.
             assert!((scp - expected).abs() < 0.03, "{r}: {scp} {expected}");
         }
-        assert!((raster.measure()["coverage"] - 400.0 / 784.0).abs() < 1e-3);
+        let measures = raster.measure();
+        assert!((measures["coverage"] - 400.0 / 784.0).abs() < 1e-3);
+        assert_eq!((measures["overlap"], measures["spill"]), (0.0, 0.0));
+        // OF is flat until squares meet at r = g / 2; beyond, the strips of 2r - g between two of them count
+        // (and a little at the corners).
+        assert_eq!(raster.overlap_of_grown(3.7), 0.0);
+        let expected = 2.0 * (a + 2.0) * 2.0 / 784.0;
+        assert!((raster.overlap_of_grown(5.0) - expected).abs() < 0.02, "{}", raster.overlap_of_grown(5.0));
+    }
+
+    #[test]
+    fn overlap_and_spill_are_seen() {
+        let mut raster = Raster::new(Rect::new(0.0, 0.0, 200.0, 200.0), 0.5);
+        raster.add_inside(Point::ORIGIN, &[square(20.0, 20.0, 160.0)]);
+        cover(&[square(20.0, 20.0, 160.0)], Point::ORIGIN, 0.5, raster.columns, &mut raster.whole);
+        raster.add_piece(Point::ORIGIN, &[vec![square(10.0, 50.0, 40.0)]]);
+        raster.add_piece(Point::ORIGIN, &[vec![square(40.0, 50.0, 40.0)]]);
+        let measures = raster.measure();
+        assert!((measures["overlap"] - 400.0 / 25_600.0).abs() < 1e-3, "{measures:?}");
+        assert!((measures["spill"] - 400.0 / 25_600.0).abs() < 1e-3, "{measures:?}");
     }
 
     #[test]
@@ -250,13 +333,12 @@ mod tests {
         raster.add_inside(Point::ORIGIN, &[square(0.0, 0.0, 400.0)]);
         for k in 0..10 {
             let x = f64::from(k) * 40.0;
-            raster.add_ink(
-                Point::ORIGIN,
-                &[[(x, 0.0), (x + 20.0, 0.0), (x + 20.0, 400.0), (x, 400.0)].map(Point::from).to_vec()],
-            );
+            let strip = [(x, 0.0), (x + 20.0, 0.0), (x + 20.0, 400.0), (x, 400.0)].map(Point::from).to_vec();
+            raster.add_piece(Point::ORIGIN, &[vec![strip]]);
         }
         let measures = raster.measure();
-        assert!(measures["evenness"] > 0.94 && measures["gap_cv"] < 0.1, "{measures:?}");
+        // At both ends of a strip the gap narrows into the corners.
+        assert!(measures["evenness"] > 0.94 && measures["gap_cv"] < 0.16, "{measures:?}");
         assert!((measures["largest_gap"] - 1.0).abs() < 0.1);
     }
 }

@@ -67,7 +67,7 @@ impl DirectionField {
     /// or at a singularity.
     pub fn direction(&self, at: Point, towards: Vec2) -> Option<Vec2> {
         let z = self.z(at)?;
-        let length = z.hypot();
+        let length = z.hypot2().sqrt();
         // Near a singularity the field has no direction worth following.
         const SINGULAR: f64 = 0.05;
         if length < SINGULAR {
@@ -83,6 +83,35 @@ impl DirectionField {
             Vec2::new(s / (2.0 * y), y)
         };
         Some(if direction.dot(towards) < 0.0 { -direction } else { direction })
+    }
+
+    /// Where the field has no direction, with the index: how often a direction turns around on a way around the
+    /// place, 1/2 or -1/2 for the simple ones.
+    pub fn singularities(&self) -> Vec<(Point, f64)> {
+        let (columns, z) = (self.level.columns, &self.level.z);
+        let mut found = Vec::new();
+        for row in 0..self.level.rows - 1 {
+            for column in 0..columns - 1 {
+                let i = row * columns + column;
+                let around = [i, i + 1, i + columns + 1, i + columns];
+                if !around.iter().all(|&j| self.level.inside[j]) {
+                    continue;
+                }
+                let turned: f64 = (0..4)
+                    .map(|k| {
+                        let (a, b) = (z[around[k]], z[around[(k + 1) % 4]]);
+                        libm::atan2(a.cross(b), a.dot(b))
+                    })
+                    .sum();
+                // z turns twice as fast as the direction that it stands for.
+                let index = (turned / std::f64::consts::TAU).round() / 2.0;
+                if index != 0.0 {
+                    let middle = Vec2::new(column as f64 + 1.0, row as f64 + 1.0);
+                    found.push((self.origin + self.cell * middle, index));
+                }
+            }
+        }
+        found
     }
 
     /// Bilinear in z, never in θ.
@@ -358,6 +387,23 @@ mod tests {
         let field = DirectionField::new(&square(), &[guide], 2.0).unwrap();
         let d = field.direction(Point::new(50.0, 50.0), Vec2::new(1.0, 0.0)).unwrap();
         assert!((d.x - d.y).abs() < 1e-3, "{d:?}");
+    }
+
+    #[test]
+    fn singularities_are_found() {
+        // Around a circle the flow turns once: one singularity of index 1, or two of 1/2.
+        let circle: Vec<Point> = (0..=64)
+            .map(|k| {
+                let angle = f64::from(k) / 64.0 * std::f64::consts::TAU;
+                Point::new(50.0 + 30.0 * angle.cos(), 50.0 + 30.0 * angle.sin())
+            })
+            .collect();
+        let field = DirectionField::new(&square(), &[circle], 2.0).unwrap();
+        let found = field.singularities();
+        let inside = found.iter().filter(|(at, _)| at.distance(Point::new(50.0, 50.0)) < 25.0);
+        assert_eq!(inside.map(|(_, index)| index).sum::<f64>(), 1.0, "{found:?}");
+        let straight = vec![Point::new(0.0, 50.0), Point::new(100.0, 50.0)];
+        assert_eq!(DirectionField::new(&square(), &[straight], 2.0).unwrap().singularities(), []);
     }
 
     #[test]

@@ -7,6 +7,7 @@
 //! with a random number drawn once for ties: the same order as sorting after each insertion.
 
 use crate::field::direction::DirectionField;
+use crate::geom::distance::{covered, squared_distances};
 use crate::geom::near::PointGrid;
 use crate::geom::polyline::{self, left_of};
 use crate::geom::region::Region;
@@ -47,7 +48,7 @@ impl StreamlineParams {
 
     /// Step of the integration: fine enough that the stop test sees every approach.
     fn step(&self) -> f64 {
-        self.spacing / 8.0
+        self.spacing / 6.0
     }
 
     /// A line that turns faster than this radius has met a singularity.
@@ -62,7 +63,7 @@ pub const BOUNDARY_BONUS: f64 = 0.2;
 /// A traced line, evenly sampled.
 #[derive(Clone, Debug)]
 pub struct Streamline {
-    /// At steps of about an eighth of the spacing.
+    /// At steps of about a sixth of the spacing.
     pub points: Vec<Point>,
     /// Where it comes from.
     pub kind: LineKind,
@@ -73,6 +74,8 @@ pub struct Tracer<'a> {
     region: &'a Region,
     field: &'a DirectionField,
     params: StreamlineParams,
+    depth: Depth,
+    /// Every second point of the lines: they are found all the same.
     taken: PointGrid,
     lines: Vec<Streamline>,
     seeds: BinaryHeap<Seed>,
@@ -97,6 +100,7 @@ impl<'a> Tracer<'a> {
         Tracer {
             region,
             field,
+            depth: Depth::new(region, params.spacing),
             params,
             taken,
             lines: Vec::new(),
@@ -113,8 +117,12 @@ impl<'a> Tracer<'a> {
         self.seeds.push(Seed(Reverse((distance.max(0.0).to_bits(), tie)), [at.x.to_bits(), at.y.to_bits()]));
     }
 
-    /// Adds a line that is already known, cut into pieces, if it keeps clear of the others.
+    /// Adds a line that is already known, cut into pieces, as far as it keeps clear of the others. One that
+    /// somebody drew goes in whole, however near it is to another: both then share the room between them.
     pub fn add(&mut self, points: &[Point], kind: LineKind) {
+        if kind == LineKind::Fixed {
+            return self.keep(points, kind);
+        }
         let stop = self.params.stop();
         let clear: Vec<bool> = points.iter().map(|&p| !self.taken.any_within(p, stop, |_, _| true)).collect();
         for run in runs(&clear) {
@@ -158,9 +166,11 @@ impl<'a> Tracer<'a> {
         // into a tip, it is extended there later.
         const BOUNDARY: f64 = 0.3;
         let edge = BOUNDARY * self.params.spacing;
-        self.region.contains(p)
-            && self.region.distance(p, edge) >= edge
-            && !self.taken.any_within(p, self.params.stop(), |_, _| true)
+        let inside = match self.depth.surely_inside(p, edge) {
+            Some(inside) => inside,
+            None => self.region.contains(p) && self.region.distance(p, edge) >= edge,
+        };
+        inside && !self.taken.any_within(p, self.params.stop(), |_, _| true)
     }
 
     /// Grows a line at both ends in turn (erratum Q-7) until both have stopped.
@@ -208,18 +218,29 @@ impl<'a> Tracer<'a> {
         if mean.dot(direction) <= 0.0 || turn > h / self.params.tightest() {
             return None;
         }
-        Some((at + h * mean, mean.normalize()))
+        Some((at + h * mean, mean / mean.hypot2().sqrt()))
     }
 
     /// True if a line comes back to itself: the samples at its own end are passed over.
     fn meets_itself(&self, next: Point, ends: &[Vec<Point>; 2], side: usize) -> bool {
         let stop = self.params.stop();
         let skip = (2.0 * stop / self.params.step()) as usize;
-        let near = |p: &Point| p.distance_squared(next) < stop * stop;
-        let own = &ends[side];
-        let other = &ends[1 - side];
-        own[..own.len().saturating_sub(skip)].iter().any(near)
-            || other.iter().skip(skip.saturating_sub(own.len())).any(near)
+        let step = self.params.step();
+        // A line is no shorter than the way across it: what is far takes as many points to come near.
+        let any_near = |points: &[Point]| {
+            let mut i = 0;
+            while let Some(p) = points.get(i) {
+                let squared = p.distance_squared(next);
+                if squared < stop * stop {
+                    return true;
+                }
+                i += (((squared.sqrt() - stop) / (step * (1.0 + 1e-9))) as usize).max(1);
+            }
+            false
+        };
+        let (own, other) = (&ends[side], &ends[1 - side]);
+        any_near(&own[..own.len().saturating_sub(skip)])
+            || any_near(&other[skip.saturating_sub(own.len()).min(other.len())..])
     }
 
     /// Cuts a line into pieces of about equal length, keeps them, and sows both its sides.
@@ -253,7 +274,7 @@ impl<'a> Tracer<'a> {
             let steps = ((to - from) / self.params.step()).ceil().max(2.0) as usize;
             let points = polyline::resample(&part, steps);
             let owner = self.lines.len() as u32;
-            for &p in &points {
+            for &p in points.iter().step_by(2).chain(points.last()) {
                 self.taken.insert(p, owner);
             }
             self.sow(&points, kind);
@@ -266,15 +287,72 @@ impl<'a> Tracer<'a> {
         // The half elements of the boundary are a little thicker than half a full one.
         let spacing =
             self.params.spacing * if kind == LineKind::Boundary { 1.0 + BOUNDARY_BONUS } else { 1.0 };
-        for (p, tangent) in points.iter().zip(polyline::tangents(points, false)) {
+        // Places half a spacing apart are as good as any between.
+        for (p, tangent) in points.iter().zip(polyline::tangents(points, false)).step_by(3) {
             for side in [spacing, -spacing] {
                 let at = *p + side * left_of(tangent);
                 if self.free(at) {
-                    let distance = self.region.distance(at, 1e3 * spacing);
-                    self.seed(at, distance);
+                    self.seed(at, self.depth.distance(at));
                 }
             }
         }
+    }
+}
+
+/// Distances to the edge of a region, on a grid: most places are far from it, and nothing has to be looked up
+/// exactly there.
+struct Depth {
+    origin: Point,
+    cell: f64,
+    columns: usize,
+    rows: usize,
+    inside: Vec<bool>,
+    /// From the middle of each cell to the nearest cell that the edge passes, in units.
+    distance: Vec<f64>,
+}
+
+impl Depth {
+    fn new(region: &Region, spacing: f64) -> Self {
+        const MOST_CELLS: f64 = 2e6;
+        let bounds = region.bounds();
+        let cell = (spacing / 3.0).max((bounds.area() / MOST_CELLS).sqrt()).max(f64::MIN_POSITIVE);
+        let count = |side: f64| ((side / cell) as usize + 1).min(MOST_CELLS as usize);
+        let (columns, rows) = (count(bounds.width()), count(bounds.height()));
+        let origin = bounds.origin();
+        let mut passed = vec![false; columns * rows];
+        for contour in region.contours() {
+            let sides = contour.last().into_iter().chain(contour).zip(contour);
+            for (&p, &q) in sides {
+                let steps = (p.distance(q) / (0.5 * cell)).ceil().clamp(1.0, 1e6);
+                for k in 0..=steps as usize {
+                    let at = p.lerp(q, k as f64 / steps) - origin;
+                    let (x, y) = ((at.x / cell) as usize, (at.y / cell) as usize);
+                    passed[y.min(rows - 1) * columns + x.min(columns - 1)] = true;
+                }
+            }
+        }
+        let distance = squared_distances(&passed, columns).into_iter().map(|squared| squared.sqrt() * cell);
+        let inside = covered(region.contours(), origin, cell, columns, rows);
+        Depth { origin, cell, columns, rows, inside, distance: distance.collect() }
+    }
+
+    fn index(&self, p: Point) -> Option<usize> {
+        let (x, y) = ((p.x - self.origin.x) / self.cell, (p.y - self.origin.y) / self.cell);
+        let known = x >= 0.0 && y >= 0.0 && (x as usize) < self.columns && (y as usize) < self.rows;
+        known.then(|| y as usize * self.columns + x as usize)
+    }
+
+    /// Whether a place is inside, if it is sure to be at least this far from the edge.
+    fn surely_inside(&self, p: Point, far: f64) -> Option<bool> {
+        // A side may cut a corner between two of its samples; both ends are up to half a diagonal from the
+        // middles of their cells.
+        let i = self.index(p)?;
+        (self.distance[i] > far + 2.5 * self.cell).then(|| self.inside[i])
+    }
+
+    /// Distance to the edge, to within two cells.
+    fn distance(&self, p: Point) -> f64 {
+        self.index(p).map_or(0.0, |i| self.distance[i])
     }
 }
 

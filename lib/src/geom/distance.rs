@@ -3,24 +3,46 @@
 //! linear in the number of cells.
 
 use kurbo::Point;
+use std::ops::Range;
 
 /// Squared distance, in cells, from every cell to the nearest marked one; infinite if none
 /// is. Row by row.
 pub fn squared_distances(marked: &[bool], columns: usize) -> Vec<f64> {
+    nearest(marked, columns, None)
+}
+
+/// As [`squared_distances`], and which cell is the nearest marked one; a cell's own number if none is.
+pub fn nearest_marked(marked: &[bool], columns: usize) -> (Vec<f64>, Vec<usize>) {
+    let mut cells: Vec<usize> = (0..marked.len()).collect();
+    (nearest(marked, columns, Some(&mut cells)), cells)
+}
+
+/// `cells` are the numbers of the cells, and become those of the nearest marked ones.
+fn nearest(marked: &[bool], columns: usize, mut cells: Option<&mut Vec<usize>>) -> Vec<f64> {
     let rows = marked.len() / columns.max(1);
     let mut grid: Vec<f64> = marked.iter().map(|&m| if m { 0.0 } else { f64::INFINITY }).collect();
-    let mut line = Vec::new();
+    let (mut line, mut roots) = (Vec::new(), Vec::new());
     let mut hull = Hull::default();
     for column in 0..columns {
         line.clear();
         line.extend((0..rows).map(|row| grid[row * columns + column]));
-        hull.transform(&mut line);
+        hull.transform(&mut line, &mut roots);
         for (row, value) in line.iter().enumerate() {
             grid[row * columns + column] = *value;
         }
+        if let Some(cells) = &mut cells {
+            for (row, &root) in roots.iter().enumerate() {
+                cells[row * columns + column] = root * columns + column;
+            }
+        }
     }
-    for row in grid.chunks_exact_mut(columns.max(1)) {
-        hull.transform(row);
+    for (row, values) in grid.chunks_exact_mut(columns.max(1)).enumerate() {
+        hull.transform(values, &mut roots);
+        if let Some(cells) = &mut cells {
+            let own = &mut cells[row * columns..(row + 1) * columns];
+            let before = own.to_vec();
+            own.iter_mut().zip(&roots).for_each(|(cell, &root)| *cell = before[root]);
+        }
     }
     grid
 }
@@ -33,9 +55,12 @@ struct Hull {
 }
 
 impl Hull {
-    fn transform(&mut self, line: &mut [f64]) {
+    /// Replaces heights by squared distances; `roots` becomes where each comes from.
+    fn transform(&mut self, line: &mut [f64], roots: &mut Vec<usize>) {
         self.roots.clear();
         self.starts.clear();
+        roots.clear();
+        roots.extend(0..line.len());
         for (i, &height) in line.iter().enumerate() {
             if height.is_infinite() {
                 continue;
@@ -65,6 +90,7 @@ impl Hull {
             let (root, height) = self.roots[k];
             let d = x as f64 - root as f64;
             *value = d * d + height;
+            roots[x] = root;
         }
     }
 }
@@ -78,24 +104,49 @@ pub fn covered(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize
 
 /// Marks the cells inside simple contours in a grid with this many columns.
 pub fn cover(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize, covered: &mut [bool]) {
-    scan(contours, origin, cell, columns, covered, |around| around % 2 != 0);
+    scan(
+        contours,
+        origin,
+        cell,
+        (columns, covered.len()),
+        |around| around % 2 != 0,
+        |run| covered[run].fill(true),
+    );
+}
+
+/// Calls `visit` with the runs of cells inside simple contours in a grid of this many cells.
+pub fn runs(
+    contours: &[Vec<Point>],
+    origin: Point,
+    cell: f64,
+    (columns, cells): (usize, usize),
+    visit: impl FnMut(Range<usize>),
+) {
+    scan(contours, origin, cell, (columns, cells), |around| around % 2 != 0, visit);
 }
 
 /// Marks the cells that contours wind around (nonzero), whatever crosses what.
 pub fn cover_wound(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize, covered: &mut [bool]) {
-    scan(contours, origin, cell, columns, covered, |around| around != 0);
+    scan(
+        contours,
+        origin,
+        cell,
+        (columns, covered.len()),
+        |around| around != 0,
+        |run| covered[run].fill(true),
+    );
 }
 
-/// Marks the cells whose winding number is `inside`, by scan lines.
+/// Visits the runs of cells whose winding number is `inside`, by scan lines.
 fn scan(
     contours: &[Vec<Point>],
     origin: Point,
     cell: f64,
-    columns: usize,
-    covered: &mut [bool],
+    (columns, cells): (usize, usize),
     inside: impl Fn(i32) -> bool,
+    mut visit: impl FnMut(Range<usize>),
 ) {
-    let rows = covered.len() / columns.max(1);
+    let rows = cells / columns.max(1);
     // Rows whose middle lies in [low, high): each edge end counts once.
     let row = |y: f64| (((y - origin.y) / cell - 0.5).ceil().max(0.0) as usize).min(rows);
     let ys = || contours.iter().flatten().map(|p| p.y);
@@ -123,7 +174,7 @@ fn scan(
         for pair in crossings.windows(2) {
             around += pair[0].1;
             if inside(around) {
-                covered[start + column(pair[0].0)..start + column(pair[1].0)].fill(true);
+                visit(start + column(pair[0].0)..start + column(pair[1].0));
             }
         }
     }

@@ -1,19 +1,21 @@
 //! Placed elements to an artwork with its sublayers and counts.
 
+use super::connect::{self, Piece};
 use super::fill::Filler;
+use super::finish::Finish;
+use super::motif::Motif;
 use super::negative::Shape;
 use super::paint;
 use super::place::Placed;
-use super::prepare::Prepared;
+use super::prepare::{Field, Prepared};
 use super::template::Template;
 use crate::field::LineKind;
 use crate::geom::polyline;
 use crate::palette::palette;
 use kurbo::{Affine, BezPath, Point};
 use rayon::prelude::*;
-use rinceau_format::{Artwork, Group, Item, Part, Scene, Style};
+use rinceau_format::{Artwork, Error, Group, Item, Part, Scene, Style};
 use std::collections::BTreeMap;
-use std::f64::consts::PI;
 
 /// What one run has made.
 pub(super) struct Made<'a> {
@@ -23,6 +25,8 @@ pub(super) struct Made<'a> {
     pub fillers: &'a [Filler],
     pub negative: &'a [Shape],
     pub streamlines: usize,
+    /// Of the marks of wear.
+    pub seed: u64,
 }
 
 impl Made<'_> {
@@ -30,6 +34,18 @@ impl Made<'_> {
     fn palette(&self, field: usize, scene: &Scene) -> [&'static str; 3] {
         let field = &self.prepared.fields[field];
         palette(&field.params.palette, scene.containers[field.container].fill.as_deref())
+    }
+
+    /// How the pieces of a container are finished.
+    fn finish(&self, field: usize) -> Finish {
+        let Field { params, sizes, .. } = &self.prepared.fields[field];
+        Finish {
+            rounding: sizes.rounding,
+            distress: params.distress,
+            seed: self.seed,
+            spacing: sizes.spacing,
+            tolerance: sizes.tolerance(),
+        }
     }
 
     /// A warning if a fixed spine got no element.
@@ -52,8 +68,7 @@ impl Made<'_> {
                 counts.entry(format!("elements.{}", self.templates[placed.template].id)).or_insert(0.0);
             *count += times(placed.field);
         }
-        let dots: f64 =
-            self.fillers.iter().map(|filler| times(filler.field) * PI * filler.radius * filler.radius).sum();
+        let dots: f64 = self.fillers.iter().map(|filler| times(filler.field) * filler.area).sum();
         let ink: f64 = self.placed.iter().map(|placed| times(placed.field) * placed.area).sum();
         let count =
             |fields: &mut dyn Iterator<Item = usize>| fields.map(times).fold(0.0, |all, one| all + one);
@@ -68,7 +83,9 @@ impl Made<'_> {
 }
 
 /// The result: elements, fillers, copies of fixed elements, and the final spines, hidden.
-pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
+///
+/// Errors: a single piece is asked for, and nothing is as thick as a bridge.
+pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Result<Artwork, Error> {
     let prepared = made.prepared;
     let decimals = rinceau_format::decimals_for(prepared.input_size);
     let spacing = prepared.fields.iter().map(|field| field.sizes.spacing).fold(0.0, f64::max);
@@ -84,7 +101,7 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
         let template = &made.templates[placed.template];
         let palette = made.palette(placed.field, scene);
         // The accent is for the shapes of the gaps, where there are some.
-        let has_shapes = prepared.fields[placed.field].params.fillers == "shapes";
+        let has_shapes = prepared.fields[placed.field].params.has_shapes();
         let tone = if has_shapes && tone == 2 { elements.items.len() % 2 } else { tone };
         let parts = template.parts.iter().zip(paths).map(|((_, style), path)| {
             let style = if template.builtin {
@@ -94,24 +111,22 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
             };
             Part { path, transform: Affine::IDENTITY, style }
         });
+        let finish = made.finish(placed.field);
+        let parts: Vec<Part> = parts.filter_map(|part| finish.part(part)).collect();
         let mirror = prepared.fields[placed.field].mirror;
-        push(&mut elements, Item::new(template.id.clone(), parts.collect()), mirror);
+        push(&mut elements, Item::new(template.id.clone(), parts), mirror);
         push(&mut spines, spine_item(&placed.spine), mirror);
     }
-    let dot = |filler: &Filler| {
-        // The accent, so that the smallest shapes are seen as one family.
-        let style = Style::filled(made.palette(filler.field, scene)[2]);
-        Item::new("dot", vec![Part { path: filler.path(), transform: Affine::IDENTITY, style }])
-    };
     let mut fillers = Group { name: "fillers".into(), ..Group::default() };
     for filler in made.fillers {
-        push(&mut fillers, dot(filler), prepared.fields[filler.field].mirror);
+        push(&mut fillers, filler_item(filler, made, scene, decimals), prepared.fields[filler.field].mirror);
     }
     let mut negative = Group { name: "negative".into(), ..Group::default() };
     for shape in made.negative {
         let style = Style::filled(made.palette(shape.field, scene)[2]);
         let part = Part { path: shape.path(), transform: Affine::IDENTITY, style };
-        push(&mut negative, Item::new("gap", vec![part]), prepared.fields[shape.field].mirror);
+        let parts = made.finish(shape.field).part(part).into_iter().collect();
+        push(&mut negative, Item::new("gap", parts), prepared.fields[shape.field].mirror);
     }
     let fixed = Group {
         name: "fixed".into(),
@@ -122,16 +137,63 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
             .collect(),
         ..Group::default()
     };
-    let mut groups = vec![elements, fillers, negative, fixed, spines];
+    let mut counts = made.counts();
+    let mut groups = vec![elements, fillers, negative];
+    if let Some(Piece { group, bridges, too_thin }) = joined(made, scene, &groups)? {
+        groups = vec![group];
+        counts.insert("bridges".into(), bridges as f64);
+        counts.insert("too-thin".into(), too_thin as f64);
+    }
+    groups.extend([fixed, spines]);
     groups.retain(|group| !group.items.is_empty());
     let mut warnings = scene.warnings.clone();
     warnings.extend(prepared.warnings.iter().cloned());
     warnings.extend(made.bare_spines());
-    Artwork { groups, complete, warnings, counts: made.counts(), decimals, ..Artwork::default() }
+    let too_thin = counts.get("too-thin").copied().unwrap_or(0.0);
+    if too_thin > 0.0 {
+        warnings
+            .push(format!("{too_thin} elements are thinner than a bridge and were left out of the piece"));
+    }
+    Ok(Artwork { groups, complete, warnings, counts, decimals, ..Artwork::default() })
+}
+
+/// Everything drawn as one piece, if that is asked for: by the first container, since it is one for all.
+fn joined(made: &Made, scene: &Scene, groups: &[Group]) -> Result<Option<Piece>, Error> {
+    let Some(first) = made.prepared.fields.first().filter(|field| field.params.connect) else {
+        return Ok(None);
+    };
+    let tone = made.palette(0, scene)[0];
+    let groups: Vec<&Group> = groups.iter().collect();
+    connect::piece(&groups, first.sizes.bridge, first.sizes.tolerance(), tone).map(Some)
+}
+
+/// A filler, in the accent if it is built in, so that the smallest shapes are seen as one family.
+fn filler_item(filler: &Filler, made: &Made, scene: &Scene, decimals: usize) -> Item {
+    let tone = made.palette(filler.field, scene)[2];
+    let parts: Vec<Part> = match filler.motif {
+        Motif::Element(template) => {
+            let template = &made.templates[template];
+            let transform = filler.transform();
+            let scale = (transform.determinant().abs() / template.length).sqrt();
+            let part = |(path, style): &(BezPath, Style)| {
+                let style =
+                    if template.builtin { painted(style, tone) } else { style.scaled(scale, decimals) };
+                Part { path: transform * path.clone(), transform: Affine::IDENTITY, style }
+            };
+            template.parts.iter().map(part).collect()
+        }
+        _ => vec![Part { path: filler.path(), transform: Affine::IDENTITY, style: Style::filled(tone) }],
+    };
+    let finish = made.finish(filler.field);
+    let parts = parts.into_iter().filter_map(|part| finish.part(part)).collect();
+    Item::new(filler.motif.name(made.templates).to_owned(), parts)
 }
 
 /// Adds an item, and its mirror image if there is one.
 fn push(group: &mut Group, item: Item, mirror: Option<Affine>) {
+    if item.parts.is_empty() {
+        return;
+    }
     let image = mirror.map(|mirror| {
         let parts = item.parts.iter().map(|part| Part { path: mirror * part.path.clone(), ..part.clone() });
         Item::new(item.of.clone(), parts.collect())

@@ -39,15 +39,31 @@ pub(super) fn cast(
                 chosen.push((blob, trial));
             }
         }
-        let body = |(blob, trial): (&Blob, Trial)| {
-            let (field, template) = (&prepared.fields[blob.field], &templates[trial.pose.template]);
-            let part = choose::trimmed(template, trial, blob, field.sizes.min_length, &field.params);
-            Body::new(blob, trial.pose, part, template, field)
-        };
+        let body = |(blob, trial): (&Blob, Trial)| body(blob, trial, templates, &prepared.fields[blob.field]);
         let made: Vec<Option<Body>> = chosen.into_par_iter().map(body).collect();
         bodies.extend(made.into_iter().flatten());
     }
     (bodies, true)
+}
+
+/// The element for one more blob, as [`cast`] chooses it. `None` if none fits.
+pub(super) fn chosen(
+    blob: &Blob,
+    templates: &[Template],
+    usable: &[usize],
+    field: &Field,
+    neighbours: &Neighbours,
+    rng: &mut Rng,
+) -> Option<Body> {
+    let trial = best(&trials(templates, usable, blob, field), blob, field, neighbours, rng)?;
+    body(blob, trial, templates, field)
+}
+
+/// A chosen element in the best part of its blob.
+fn body(blob: &Blob, trial: Trial, templates: &[Template], field: &Field) -> Option<Body> {
+    let template = &templates[trial.pose.template];
+    let part = choose::trimmed(template, trial, blob, field.sizes.min_length, &field.params);
+    Body::new(blob, trial.pose, part, template, field)
 }
 
 /// Every pose that a blob has room for.
@@ -95,17 +111,17 @@ fn runs_against(blob: &Blob, guides: &[Vec<Point>]) -> bool {
 }
 
 /// Where which template already is.
-struct Neighbours {
+pub(super) struct Neighbours {
     grid: PointGrid,
     reach: f64,
 }
 
 impl Neighbours {
-    fn new(prepared: &Prepared, spacing: f64) -> Self {
+    pub fn new(prepared: &Prepared, spacing: f64) -> Self {
         Neighbours { grid: PointGrid::new(prepared.bounds, 2.0 * spacing), reach: 1.6 * spacing }
     }
 
-    fn add(&mut self, blob: &Blob, template: usize) {
+    pub fn add(&mut self, blob: &Blob, template: usize) {
         Self::marks(blob).for_each(|p| self.grid.insert(p, template as u32));
     }
 

@@ -1,6 +1,7 @@
-//! Which elements there are, and which a container asks for.
+//! Which elements there are, and which a container asks for, in its lines and in its gaps.
 
 use super::builtin;
+use super::motif::Motif;
 use super::prepare::Field;
 use super::template::Template;
 use rinceau_format::{Error, Scene};
@@ -33,14 +34,44 @@ pub(super) fn usable(templates: &[Template], field: &Field, scene: &Scene) -> Re
             any |= meant;
         }
         if !any {
-            let container = &scene.containers[field.container];
-            let error = unknown(word);
-            // A container's own wish is wrong where it stands; the run's is not in the drawing.
-            let own = container.overrides.contains_key("elements");
-            return Err(if own { error.at(container.source.at) } else { error });
+            return Err(at_container(unknown(word), "elements", field, scene));
         }
     }
     Ok((0..templates.len()).filter(|&i| usable[i]).collect())
+}
+
+/// What a container asks for in its gaps. Empty for nothing, and for the shapes of the gaps.
+///
+/// Errors: as [`usable`].
+pub(super) fn motifs(templates: &[Template], field: &Field, scene: &Scene) -> Result<Vec<Motif>, Error> {
+    let mut motifs = Vec::new();
+    for word in field.params.fillers.split_whitespace() {
+        match word {
+            "dots" => motifs.push(Motif::Dot),
+            "diamonds" => motifs.push(Motif::Diamond),
+            "drops" => motifs.push(Motif::Drop),
+            "shapes" | "none" => {}
+            name => {
+                let named = |i: &usize| templates[*i].names.iter().any(|own| own == name);
+                let before = motifs.len();
+                motifs.extend((0..templates.len()).filter(named).map(Motif::Element));
+                if motifs.len() == before {
+                    let sentence = format!("Nothing that fills gaps is called '{name}'");
+                    let remedy =
+                        "Use dots, diamonds, drops, shapes, none, or the id, kind or family of an element";
+                    let error = Error::new("no-filler", sentence, remedy);
+                    return Err(at_container(error, "fillers", field, scene));
+                }
+            }
+        }
+    }
+    Ok(motifs)
+}
+
+/// A container's own wish is wrong where it stands; the run's is not in the drawing.
+fn at_container(error: Error, param: &str, field: &Field, scene: &Scene) -> Error {
+    let container = &scene.containers[field.container];
+    if container.overrides.contains_key(param) { error.at(container.source.at) } else { error }
 }
 
 fn unknown(word: &str) -> Error {

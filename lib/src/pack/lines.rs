@@ -34,7 +34,7 @@ pub(super) fn trace(
         tracer.add(spine, LineKind::Fixed);
     }
     // Just inside the boundary, so that a smoothed line does not leave the region.
-    let inset = 0.03 * sizes.spacing;
+    let inset = 0.012 * sizes.spacing;
     for contour in boolean::offset(field.region.contours(), -inset) {
         boundary(field, flow, &contour, half_elements && field.params.border, &mut tracer);
     }

@@ -22,21 +22,29 @@ mod blob;
 mod builtin;
 mod cast;
 mod choose;
+mod connect;
 mod fill;
+mod finish;
+mod flow;
+mod gaps;
+mod insert;
 mod library;
 mod lines;
 mod map;
+mod motif;
 mod negative;
 mod paint;
 mod params;
 mod place;
 mod prepare;
 mod refine;
+mod shift;
 mod template;
+mod thread;
 
 pub use params::Params;
 
-use crate::field::DirectionField;
+use crate::field::{DirectionField, LineKind};
 use crate::progress::Progress;
 use crate::rng::Rng;
 use crate::shapes::closed;
@@ -67,19 +75,34 @@ pub fn generate(
     let usable = prepared.fields.iter().map(|field| library::usable(&templates, field, scene));
     let usable = usable.collect::<Result<Vec<_>, _>>()?;
 
+    let motifs = prepared.fields.iter().map(|field| library::motifs(&templates, field, scene));
+    let motifs = motifs.collect::<Result<Vec<_>, _>>()?;
+
     let (blobs, flows, mut complete) = rooms(&prepared, &templates, &usable, rng, progress);
     let step = |done| progress.step("cast", done);
     let (mut bodies, finished) = cast::cast(&prepared, &templates, &usable, &blobs, &mut rng.fork(), step);
     complete &= finished;
-    let step = |done| progress.step("refine", done);
-    complete &= refine::refine(&mut bodies, &templates, &prepared, step);
+    // Some room shows only once the first elements have moved.
+    let iterations = prepared.fields.iter().map(|field| field.params.iterations).max().unwrap_or(0);
+    let inserted_at = iterations / 3;
+    let refine = |bodies: &mut Vec<_>, part: std::ops::Range<usize>, progress: &mut dyn Progress| {
+        refine::refine(bodies, &templates, &flows, &prepared, part, |done| progress.step("refine", done))
+    };
+    complete &= refine(&mut bodies, 0..inserted_at, progress);
+    if complete {
+        let step = |done| progress.step("insert", done);
+        complete &=
+            insert::insert(&mut bodies, &templates, &usable, &flows, &prepared, &mut rng.fork(), step);
+        complete &= refine(&mut bodies, inserted_at..iterations, progress);
+    }
     let mut placement = Placement::new(&prepared);
     complete &= placement.place(&bodies, &templates, &prepared, |done| progress.step("place", done));
     // Out of time, dots would fill what elements should have.
     let (mut fillers, mut negative) = (Vec::new(), Vec::new());
     if complete {
         progress.step("fill", 0.0);
-        (fillers, complete) = fill::fill(&prepared, &mut placement, |done| progress.step("fill", done));
+        let step = |done| progress.step("fill", done);
+        (fillers, complete) = fill::fill(&prepared, &mut placement, &templates, &motifs, &flows, step);
         let (all, finished) = negative::shapes(&prepared, &placement, |done| progress.step("fill", done));
         (negative, complete) = (all, complete && finished);
     }
@@ -95,21 +118,23 @@ pub fn generate(
             fillers: &fillers,
             negative: &negative,
             streamlines: blobs.len(),
+            seed: rng.bits(),
         },
         scene,
         complete,
-    );
+    )?;
     if prepared.fields.iter().any(|field| field.params.show_gaps) {
         artwork.groups.extend(map::map(scene, &artwork)?);
     }
+    artwork.groups.extend(flow::flow(&prepared, &flows));
     artwork.counts.insert("flow-angle".to_owned(), flow_angle(&placement, &flows));
     Ok(artwork)
 }
 
-/// Mean angle between elements and the flow where they lie, in degrees.
+/// Mean angle between elements and the flow where they lie, in degrees. Fixed spines need not follow it.
 fn flow_angle(placement: &Placement, flows: &[Option<DirectionField>]) -> f64 {
     let (mut sum, mut total) = (0.0, 0.0);
-    for placed in &placement.placed {
+    for placed in placement.placed.iter().filter(|placed| placed.kind != LineKind::Fixed) {
         let Some(flow) = &flows[placed.field] else { continue };
         for side in placed.spine.windows(2) {
             let along = side[1] - side[0];
@@ -153,7 +178,8 @@ fn rooms(
             lines::trace(field, &flow, half_elements, rng, |done| progress.step("streamlines", done));
         complete &= finished;
         progress.step("blobs", 0.0);
-        blobs.extend(blob::blobs(index, field, &flow, lines));
+        let rooms = blob::blobs(index, field, &flow, lines);
+        blobs.extend(rooms.into_iter().flat_map(|blob| thread::threaded(blob, field)));
         flows.push(Some(flow));
     }
     (blobs, flows, complete)

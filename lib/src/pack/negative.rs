@@ -45,7 +45,7 @@ pub(super) fn shapes(
 ) -> (Vec<Shape>, bool) {
     let mut all = Vec::new();
     for (index, field) in prepared.fields.iter().enumerate() {
-        if field.params.fillers != "shapes" {
+        if !field.params.has_shapes() {
             continue;
         }
         if !go_on(index as f64 / prepared.fields.len() as f64) {
@@ -58,7 +58,7 @@ pub(super) fn shapes(
 
 fn of_field(field: &Field, placement: &Placement) -> Vec<Vec<Contour>> {
     let sizes = &field.sizes;
-    let reach = sizes.safe_gap() + placement.widest_stroke();
+    let reach = sizes.safe(sizes.filler_gap) + placement.widest_stroke();
     let bounds = field.region.bounds().inflate(reach, reach);
     let near = placement.silhouettes.iter().filter(|contour| touches(contour, bounds));
     let near: Vec<Contour> = near.cloned().collect();

@@ -16,6 +16,16 @@ pub(super) const FAMILIES: &[(&str, &str)] = &[
     ("feathers", "Feathers"),
 ];
 
+/// What fills gaps.
+const FILLERS: &[(&str, &str)] = &[
+    ("dots", "Dots"),
+    ("diamonds", "Diamonds"),
+    ("drops", "Drops"),
+    ("dots diamonds drops", "Dots, diamonds and drops"),
+    ("shapes", "Shapes of the gaps"),
+    ("none", "Nothing"),
+];
+
 crate::params! {
     /// Parameters of packing. Lengths of 0 are derived from the area that is filled.
     pub struct Params {
@@ -33,8 +43,10 @@ crate::params! {
         min_length: Length = "min-length", "Shortest element", More, Kind::Length, "0";
         #[doc = "Empty distance kept from the outline of the shape. 0 chooses half the gap"]
         edge: Length = "edge", "Distance from outline", More, Kind::Length, "0";
-        #[doc = "What goes into the gaps that are left: small dots, shapes that follow the elements around them, or nothing"]
-        fillers: String = "fillers", "Fill gaps with", Basic, Kind::Choice(&[("dots", "Dots"), ("shapes", "Shapes of the gaps"), ("none", "Nothing")]), "dots";
+        #[doc = "What goes into the gaps that are left: small dots, diamonds or drops, names of your own small elements, shapes that follow the elements around them, or nothing"]
+        fillers: String = "fillers", "Fill gaps with", Basic, Kind::Names(FILLERS), "dots";
+        #[doc = "Empty distance kept around what fills the gaps. 0 chooses seven tenths of the gap, or all of a gap that you chose yourself"]
+        filler_gap: Length = "filler-gap", "Gap around fillers", More, Kind::Length, "0";
         #[doc = "How freely an element's width may swell and shrink along its length to fill the space it has: 1 keeps its proportions, 3 is very free"]
         stretch: f64 = "stretch", "Swelling", More, Kind::Number { min: 1.0, max: 3.0 }, "1.6";
         #[doc = "How hard equal neighbours are avoided: 0 takes whatever fits best, 1 mixes as much as it can"]
@@ -43,12 +55,33 @@ crate::params! {
         sense: String = "sense", "Pointing", More, Kind::Choice(&[("arrow", "With the arrows"), ("any", "Either way")]), "arrow";
         #[doc = "Whether one half is composed and the other is its mirror image: about the line that the shape is most alike about, or about the first guide that is straight"]
         symmetry: String = "symmetry", "Symmetry", More, Kind::Choice(&[("none", "None"), ("mirror", "Alike on both sides"), ("line", "Alike beside a straight guide")]), "none";
+        #[doc = "How many elements may share one line, one behind the other"]
+        thread: usize = "thread", "Elements on one line", More, Kind::Whole { min: 1, max: 20 }, "1";
         #[doc = "How often the composition is refined: elements move apart, turn and grow into the gaps. 0 leaves them as first placed"]
         iterations: usize = "iterations", "Refinements", More, Kind::Whole { min: 0, max: 200 }, "15";
+        #[doc = "How lines are shifted when they are refined: the whole line at once, or along a shortest path as in the paper, which is slow"]
+        shift: String = "shift", "Lines move", More, Kind::Choice(&[("whole", "As a whole"), ("paper", "Along a shortest path (slow)")]), "whole";
         #[doc = "Whether a hidden sublayer shows how wide the gaps are: blue where they are narrower than their mean, red where they are wider"]
         show_gaps: bool = "show-gaps", "Map of the gaps", More, Kind::Switch, "false";
+        #[doc = "Whether a hidden sublayer shows which way the flow runs, and where it has no direction: discs where it turns around a point, triangles where it parts"]
+        show_flow: bool = "show-flow", "Picture of the flow", More, Kind::Switch, "false";
+        #[doc = "Radius that corners are rounded to. Nothing grows by it"]
+        rounding: Length = "rounding", "Round corners", More, Kind::Length, "0";
+        #[doc = "How worn the elements look, as if printed from an old block: 0 not at all"]
+        distress: f64 = "distress", "Worn look", More, Kind::Number { min: 0.0, max: 1.0 }, "0";
+        #[doc = "Whether everything is joined to one piece that can be cut out: thinner parts are left out, and bridges join the rest"]
+        connect: bool = "connect", "Join to one piece", More, Kind::Switch, "false";
+        #[doc = "How wide bridges are, and the least thickness of such a piece. 0 chooses the gap"]
+        bridge: Length = "bridge", "Bridge width", More, Kind::Length, "0";
         #[doc = "Whether half elements line the outline where the flow runs along it"]
         border: bool = "border", "Line the outline with half elements", More, Kind::Switch, "true";
+    }
+}
+
+impl Params {
+    /// True if the gaps become shapes themselves.
+    pub(super) fn has_shapes(&self) -> bool {
+        self.fillers.split_whitespace().any(|word| word == "shapes")
     }
 }
 
@@ -61,8 +94,13 @@ pub(super) struct Sizes {
     pub spacing: f64,
     pub min_length: f64,
     pub max_length: f64,
+    /// Between elements.
     pub gap: f64,
+    /// Around what fills the gaps.
+    pub filler_gap: f64,
     pub edge: f64,
+    pub rounding: f64,
+    pub bridge: f64,
 }
 
 impl Sizes {
@@ -74,8 +112,13 @@ impl Sizes {
     /// The gap between chords that guarantees the gap between what they stand for, also after
     /// rounding to the written decimals.
     pub fn safe_gap(&self) -> f64 {
+        self.safe(self.gap)
+    }
+
+    /// As [`Sizes::safe_gap`], of any gap.
+    pub fn safe(&self, gap: f64) -> f64 {
         const ROUNDING: f64 = 1e-3;
-        self.gap * (1.0 + ROUNDING) + 2.0 * self.tolerance()
+        gap * (1.0 + ROUNDING) + 2.0 * self.tolerance()
     }
 
     /// `area` is that of everything to be filled; then area and perimeter of this container.
@@ -98,6 +141,13 @@ impl Sizes {
         let max_length = or(params.max_length, 4.0 * spacing);
         let min_length = or(params.min_length, 1.5 * spacing).min(max_length);
         let gap = or(params.min_gap, spacing / 8.0);
-        Sizes { spacing, min_length, max_length, gap, edge: or(params.edge, gap / 2.0) }
+        // Round things look farther from their neighbours than they are. Who says how wide a gap has to
+        // be, to cut it out for instance, means all of them.
+        const AROUND_FILLERS: f64 = 0.7;
+        let chosen = params.min_gap.to_user(px_per_unit) > 0.0;
+        let filler_gap = or(params.filler_gap, if chosen { gap } else { AROUND_FILLERS * gap });
+        let edge = or(params.edge, 0.3 * gap);
+        let (rounding, bridge) = (or(params.rounding, 0.0), or(params.bridge, gap));
+        Sizes { spacing, min_length, max_length, gap, filler_gap, edge, rounding, bridge }
     }
 }

@@ -176,10 +176,16 @@ impl Placement {
         self.strokes.iter().copied().fold(0.0, f64::max)
     }
 
-    /// Distance from a place to the nearest outline, from inside as from outside; `reach` at
-    /// most.
-    pub fn distance(&self, at: Point, reach: f64) -> f64 {
-        self.outlines.distance(at, reach)
+    /// The outlines of everything placed.
+    pub fn outlines(&self) -> &SegmentGrid {
+        &self.outlines
+    }
+
+    /// True if the outlines of a filler are inside the region and keep its gap to what is placed.
+    pub fn filler_goes(&self, outlines: &[Contour], field: &Field) -> bool {
+        let margin = (field.sizes.tolerance() - field.sizes.edge).max(0.0);
+        let gap = field.sizes.safe(field.sizes.filler_gap);
+        outlines.iter().all(|outline| is_inside(outline, margin, field) && self.is_clear(outline, gap))
     }
 
     /// True if every outline is inside the region and keeps the gap to what is placed.

@@ -62,7 +62,7 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
         let perimeter = shape.iter().map(|contour| polyline::length(&closed(contour))).sum();
         let sizes = Sizes::new(&own, shapes.area(), (shapes.areas[index], perimeter), scene.px_per_unit);
         check_gap(&sizes, container)?;
-        match shapes.free(index, sizes.gap, sizes.edge) {
+        match shapes.free(index, sizes.filler_gap, sizes.edge) {
             Some(region) => {
                 let axis = axis(&own, &region, (&guides, container))?;
                 match half(region, axis, &sizes) {

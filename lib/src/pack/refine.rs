@@ -8,7 +8,7 @@
 //! more than its share of the space between it and a neighbour, so that no two collide, the
 //! order does not matter, and small elements still gain more: the share of each is the
 //! other's part of their common area. The paper finds a shifted streamline by Dijkstra's
-//! algorithm on 12,800 nodes; the new line here is the old one moved by a smooth offset that
+//! algorithm on 12,800 nodes (`shift`, for comparison); the new line here is the old one moved by a smooth offset that
 //! centres it in its space, which costs a hundred steps and keeps the flow, since it moves by
 //! little and smoothly. The rotations of 4.6 are among those offsets. An element is described
 //! by its envelope in both, so the whole iteration is linear in the number of elements.
@@ -16,12 +16,15 @@
 use super::blob::{Blob, Spine};
 use super::choose::{self, Fit, Pose};
 use super::prepare::{Field, Prepared};
+use super::shift;
 use super::template::{BINS, Side, Template};
-use crate::field::LineKind;
+use crate::field::{DirectionField, LineKind};
+use crate::geom::boolean::Contour;
 use crate::geom::near::PointTable;
 use crate::geom::polyline::{self, left_of};
 use kurbo::Point;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Growth tolerance α: a new element may have this share of the old one's area (4.6).
 const TOLERANCE: f64 = 0.95;
@@ -75,19 +78,28 @@ impl Body {
         let fit = choose::fit(template, pose, &own, (0.0, 1.0), &spine.curvature, &field.params)?;
         Some(Body { shape: shape(spine, &fit, template), best_area: fit.area, blob: own, fit, still: 0 })
     }
+
+    /// The outline of its envelope.
+    pub fn outline(&self) -> Contour {
+        let [left, right] = &self.shape.sides;
+        let [start, end] = self.shape.tips;
+        let there = std::iter::once(start).chain(left.iter().copied()).chain([end]);
+        there.chain(right.iter().rev().copied()).collect()
+    }
 }
 
-/// Refines all bodies together. `go_on` is asked once an iteration; false ends early.
+/// Refines all bodies together in some of the iterations. `go_on` is asked once in each; false ends early.
 pub(super) fn refine(
     bodies: &mut [Body],
     templates: &[Template],
+    flows: &[Option<DirectionField>],
     prepared: &Prepared,
+    iterations: Range<usize>,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> bool {
     let fields = &prepared.fields;
-    let most = fields.iter().map(|field| field.params.iterations).max().unwrap_or(0);
-    for iteration in 0..most {
-        if !go_on(iteration as f64 / most as f64) {
+    for iteration in iterations.clone() {
+        if !go_on(iteration as f64 / iterations.end as f64) {
             return false;
         }
         let neighbourhood = Neighbourhood::new(bodies, prepared);
@@ -101,7 +113,8 @@ pub(super) fn refine(
                 if rests || iteration >= field.params.iterations {
                     return None;
                 }
-                let blob = moved(i, body, field, &neighbourhood, templates, prepared.input_size);
+                let flow = flows[body.blob.field].as_ref();
+                let blob = moved(i, body, &neighbourhood, templates, prepared, flow);
                 refitted(body, blob, templates, field, RETHINK.contains(&iteration))
             })
             .collect();
@@ -203,11 +216,12 @@ impl Neighbourhood {
 fn moved(
     index: usize,
     body: &Body,
-    field: &Field,
     neighbourhood: &Neighbourhood,
     templates: &[Template],
-    input_size: f64,
+    prepared: &Prepared,
+    flow: Option<&DirectionField>,
 ) -> Blob {
+    let (field, input_size) = (&prepared.fields[body.blob.field], prepared.input_size);
     // g_limit = 0.005 input_size (4.6), and never more than a step of the line spacing.
     let limit = (0.005 * input_size).min(0.12 * field.sizes.spacing);
     let on_boundary = body.blob.kind == LineKind::Boundary;
@@ -227,8 +241,14 @@ fn moved(
         let template = &templates[body.fit.pose.template];
         let offsets = offsets(&room, template, body.fit.pose, limit);
         let tangents = polyline::tangents(&points, false);
-        for (i, p) in points.iter_mut().enumerate() {
-            *p += offsets[i.min(BINS - 1)] * left_of(tangents[i]);
+        if field.params.shift == "paper" {
+            let widths = [0, 1].map(|side| room[side].iter().copied().fold(0.0, f64::max));
+            let ends = [offsets[0], offsets[BINS - 1]];
+            points = polyline::resample(&shift::path(&points, ends, widths, limit, flow), BINS);
+        } else {
+            for (i, p) in points.iter_mut().enumerate() {
+                *p += offsets[i.min(BINS - 1)] * left_of(tangents[i]);
+            }
         }
         for (i, offset) in offsets.iter().enumerate() {
             room[0][i] = (room[0][i] - offset).max(0.0);

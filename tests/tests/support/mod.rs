@@ -5,6 +5,7 @@
 #![allow(dead_code)]
 
 pub mod geometry;
+pub mod packing;
 
 use std::io::{Read, Write};
 use std::os::unix::process::CommandExt;

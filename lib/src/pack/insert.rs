@@ -1,0 +1,161 @@
+//! Small elements in the gaps that the first ones leave.
+//!
+//! The paper names small extra elements in large gaps as future work (section 6, checklist F-083). Here
+//! they are part of refinement: once the first elements have grown into the space between them, a line
+//! along the flow is laid through the middle of every gap that has room for a small one, the widest gap
+//! first, and what it carries is refined with all the others from then on.
+
+use super::blob::{Blob, Spine};
+use super::cast::{Neighbours, chosen};
+use super::gaps::{Gaps, Place};
+use super::params::Sizes;
+use super::prepare::{Field, Prepared};
+use super::refine::Body;
+use super::template::{BINS, Template};
+use crate::field::{DirectionField, LineKind};
+use crate::geom::boolean::Contour;
+use crate::geom::near::SegmentGrid;
+use crate::geom::polyline::{self, left_of};
+use crate::rng::Rng;
+use kurbo::{Point, Vec2};
+
+/// Half widths of small elements, in spacings: narrower ones would be threads beside the others.
+const NARROWEST: f64 = 0.13;
+/// The least length, in spacings, and in half widths of the gap.
+const SHORTEST: f64 = 0.75;
+const SLENDER: f64 = 2.6;
+/// The farthest that a line runs from the middle of its gap, in half widths of the gap.
+const FARTHEST: f64 = 6.0;
+
+/// Adds small elements to those of every container that is refined. False if the time ran out first.
+pub(super) fn insert(
+    bodies: &mut Vec<Body>,
+    templates: &[Template],
+    usable: &[Vec<usize>],
+    flows: &[Option<DirectionField>],
+    prepared: &Prepared,
+    rng: &mut Rng,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> bool {
+    let spacing = prepared.fields.iter().map(|field| field.sizes.spacing).fold(f64::INFINITY, f64::min);
+    let silhouettes: Vec<Contour> = bodies.iter().map(Body::outline).collect();
+    let mut outlines = SegmentGrid::new(prepared.bounds, spacing / 6.0);
+    for (owner, silhouette) in silhouettes.iter().enumerate() {
+        outlines.insert_contour(silhouette, owner as u32);
+    }
+    let mut neighbours = Neighbours::new(prepared, spacing);
+    bodies.iter().for_each(|body| neighbours.add(&body.blob, body.fit.pose.template));
+    for (index, field) in prepared.fields.iter().enumerate() {
+        let Some(flow) = &flows[index] else { continue };
+        if field.params.iterations == 0 {
+            continue;
+        }
+        let mut gaps = Gaps::new(field, &silhouettes, field.sizes.spacing, field.sizes.gap);
+        let mut heap = gaps.middles(NARROWEST * field.sizes.spacing);
+        const ASK_EVERY: usize = 64;
+        let mut popped = 0;
+        while let Some(place) = heap.pop() {
+            popped += 1;
+            if popped % ASK_EVERY == 0 && !go_on(index as f64 / prepared.fields.len() as f64) {
+                return false;
+            }
+            let Some((centre, radius)) = settled(&place, &gaps, &outlines, &mut heap, &field.sizes) else {
+                continue;
+            };
+            let Some(blob) = blob(index, field, flow, (&gaps, &outlines), (centre, radius)) else { continue };
+            let Some(body) = chosen(&blob, templates, &usable[index], field, &neighbours, rng) else {
+                continue;
+            };
+            neighbours.add(&blob, body.fit.pose.template);
+            let outline = body.outline();
+            outlines.insert_contour(&outline, bodies.len() as u32);
+            gaps.add(&outline);
+            bodies.push(body);
+        }
+    }
+    true
+}
+
+/// The middle of a gap and its clearance, if it is wide enough and the widest left; goes back to the heap
+/// if it is not.
+fn settled(
+    place: &Place,
+    gaps: &Gaps,
+    outlines: &SegmentGrid,
+    heap: &mut std::collections::BinaryHeap<Place>,
+    sizes: &Sizes,
+) -> Option<(Point, f64)> {
+    let (centre, radius) = gaps.centred(outlines, place.at());
+    if radius < NARROWEST * sizes.spacing {
+        return None;
+    }
+    if radius < place.clearance() && heap.peek().is_some_and(|next| radius < next.clearance()) {
+        heap.push(Place::new(centre, radius));
+        return None;
+    }
+    Some((centre, radius))
+}
+
+/// A line along the flow through the middle of a gap, with the room beside it. `None` if it is too short.
+fn blob(
+    index: usize,
+    field: &Field,
+    flow: &DirectionField,
+    (gaps, outlines): (&Gaps, &SegmentGrid),
+    (centre, radius): (Point, f64),
+) -> Option<Blob> {
+    let spacing = field.sizes.spacing;
+    let step = spacing / 24.0;
+    let clearance = |at: Point| gaps.clearance(outlines, at);
+    // A tip needs no width, but the line should not slip through a crack into the next gap.
+    let least = 0.25 * radius;
+    let first = flow.direction(centre, Vec2::new(1.0, 0.0))?;
+    let mut points = vec![centre];
+    for along in [first, -first] {
+        points.reverse();
+        let (mut at, mut direction, mut walked) = (centre, along, 0.0);
+        while walked < FARTHEST * radius {
+            let next = at + step * direction;
+            if clearance(next) < least {
+                break;
+            }
+            // Uneven flow is left to the field; a small element does not bend sharply.
+            direction =
+                flow.direction(next, direction).filter(|d| d.dot(direction) > 0.97).unwrap_or(direction);
+            (at, walked) = (next, walked + step);
+            points.push(at);
+        }
+    }
+    let length = polyline::length(&points);
+    if length < (SHORTEST * spacing).max(SLENDER * radius) {
+        return None;
+    }
+    let curve = Spine::new(&points, spacing).curve;
+    let ribs: Vec<[f64; 2]> = (0..=BINS)
+        .map(|i| {
+            let jet = curve.jet(i as f64 / BINS as f64);
+            let normal = left_of(jet.d / jet.d.hypot().max(f64::MIN_POSITIVE));
+            [normal, -normal].map(|side| walk(jet.p, side, 1.5 * radius + step, clearance))
+        })
+        .collect();
+    let room = [0, 1].map(|side| ribs.windows(2).map(|pair| pair[0][side].min(pair[1][side])).collect());
+    Some(Blob { field: index, kind: LineKind::Free, points, length, room })
+}
+
+/// How far one can walk before there is no clearance left.
+fn walk(from: Point, along: Vec2, most: f64, clearance: impl Fn(Point) -> f64) -> f64 {
+    // Each step is as long as is sure to be free.
+    const STEPS: usize = 12;
+    let mut walked = 0.0;
+    for _ in 0..STEPS {
+        let free = clearance(from + walked * along);
+        if free <= 0.02 * most {
+            break;
+        }
+        walked += free;
+        if walked >= most {
+            return most;
+        }
+    }
+    walked
+}
