@@ -60,6 +60,8 @@ pub(super) struct Plant<'a> {
     attached: Vec<Vec<(f64, f64)>>,
     /// The stretches of each stem in whose stroke a branch still lies that has left it.
     shared: Vec<Vec<(f64, f64)>>,
+    /// From which arc length on each stem is clear of its parent's stroke.
+    partings: Vec<f64>,
     /// How many stems have had their branches.
     grown: usize,
     forks: Choices,
@@ -144,6 +146,7 @@ impl<'a> Plant<'a> {
             crossings: Vec::new(),
             attached: Vec::new(),
             shared: Vec::new(),
+            partings: Vec::new(),
             grown: 0,
             forks,
             tips,
@@ -158,9 +161,10 @@ impl<'a> Plant<'a> {
         let index = self.stems.len();
         self.attached.push(Vec::new());
         self.shared.push(Vec::new());
+        let parting = self.parting(&stem);
+        self.partings.push(parting);
         if let Some((parent, s)) = stem.parent {
-            let parted = s + self.parting(&stem);
-            self.shared[parent].push((s, parted));
+            self.shared[parent].push((s, s + parting));
         }
         // A curl ends where it gets tighter than it is wide.
         let tight = stem.nodes.iter().find(|node| node.curvature.abs() * stem.width(node.s) > TIGHT);
@@ -262,7 +266,7 @@ impl<'a> Plant<'a> {
         let step = (1.4 * stem.taper.start + self.sizes.gap).max(length / 32.0);
         // Not at the very start, where the parent is still near, nor under the tip's flower.
         let mut s = match stem.parent {
-            Some(_) => (0.06 * length).max(2.0 * step).max(self.parting(stem)),
+            Some(_) => (0.06 * length).max(2.0 * step).max(self.partings[parent]),
             None => 0.6 * step,
         };
         while s < 0.96 * length {
@@ -319,7 +323,7 @@ impl<'a> Plant<'a> {
             }
             let (level, length) = (self.stems[parent].level, self.stems[parent].end);
             let count = of_level(&self.params.branches, level).unwrap_or(0.0) as usize;
-            let parting = self.parting(&self.stems[parent]);
+            let parting = self.partings[parent];
             // The first branch leaves on the inside of its parent's curl.
             let first = self.stems[parent].side;
             for i in 0..if level + 1 < self.params.levels { count } else { 0 } {
