@@ -3,7 +3,8 @@
 //! The paper names small extra elements in large gaps as future work (section 6, checklist F-083). Here
 //! they are part of refinement: once the first elements have grown into the space between them, a line
 //! along the flow is laid through the middle of every gap that has room for a small one, the widest gap
-//! first, and what it carries is refined with all the others from then on.
+//! first, and what it carries is refined with all the others from then on. Once more at the end, where an element
+//! found no place in the end.
 
 use super::blob::{Blob, Spine};
 use super::cast::{Neighbours, chosen};
@@ -27,37 +28,45 @@ const SLENDER: f64 = 2.6;
 /// The farthest that a line runs from the middle of its gap, in half widths of the gap.
 const FARTHEST: f64 = 6.0;
 
-/// Adds small elements to those of every container that is refined. False if the time ran out first.
+/// What small elements are chosen from, and where they go.
+pub(super) struct Ground<'a> {
+    pub prepared: &'a Prepared,
+    pub templates: &'a [Template],
+    /// Templates of each container, and its flow.
+    pub usable: &'a [Vec<usize>],
+    pub flows: &'a [Option<DirectionField>],
+}
+
+/// Small elements between others, whose outlines are `silhouettes`, in every container that is refined. False if
+/// the time ran out first.
 pub(super) fn insert(
-    bodies: &mut Vec<Body>,
-    templates: &[Template],
-    usable: &[Vec<usize>],
-    flows: &[Option<DirectionField>],
-    prepared: &Prepared,
+    &Ground { prepared, templates, usable, flows }: &Ground,
+    bodies: &[Body],
+    silhouettes: &[Contour],
     rng: &mut Rng,
     mut go_on: impl FnMut(f64) -> bool,
-) -> bool {
+) -> (Vec<Body>, bool) {
     let spacing = prepared.fields.iter().map(|field| field.sizes.spacing).fold(f64::INFINITY, f64::min);
-    let silhouettes: Vec<Contour> = bodies.iter().map(Body::outline).collect();
     let mut outlines = SegmentGrid::new(prepared.bounds, spacing / 6.0);
     for (owner, silhouette) in silhouettes.iter().enumerate() {
         outlines.insert_contour(silhouette, owner as u32);
     }
     let mut neighbours = Neighbours::new(prepared, spacing);
     bodies.iter().for_each(|body| neighbours.add(&body.blob, body.fit.pose.template));
+    let mut inserted = Vec::new();
     for (index, field) in prepared.fields.iter().enumerate() {
         let Some(flow) = &flows[index] else { continue };
         if field.params.iterations == 0 {
             continue;
         }
-        let mut gaps = Gaps::new(field, &silhouettes, field.sizes.spacing, field.sizes.gap);
+        let mut gaps = Gaps::new(field, silhouettes, field.sizes.spacing, field.sizes.gap);
         let mut heap = gaps.middles(NARROWEST * field.sizes.spacing);
         const ASK_EVERY: usize = 64;
         let mut popped = 0;
         while let Some(place) = heap.pop() {
             popped += 1;
             if popped % ASK_EVERY == 0 && !go_on(index as f64 / prepared.fields.len() as f64) {
-                return false;
+                return (inserted, false);
             }
             let Some((centre, radius)) = settled(&place, &gaps, &outlines, &mut heap, &field.sizes) else {
                 continue;
@@ -68,12 +77,12 @@ pub(super) fn insert(
             };
             neighbours.add(&blob, body.fit.pose.template);
             let outline = body.outline();
-            outlines.insert_contour(&outline, bodies.len() as u32);
+            outlines.insert_contour(&outline, u32::MAX);
             gaps.add(&outline);
-            bodies.push(body);
+            inserted.push(body);
         }
     }
-    true
+    (inserted, true)
 }
 
 /// The middle of a gap and its clearance, if it is wide enough and the widest left; goes back to the heap

@@ -88,15 +88,26 @@ pub fn generate(
     let refine = |bodies: &mut Vec<_>, part: std::ops::Range<usize>, progress: &mut dyn Progress| {
         refine::refine(bodies, &templates, &flows, &prepared, part, |done| progress.step("refine", done))
     };
+    let ground =
+        insert::Ground { prepared: &prepared, templates: &templates, usable: &usable, flows: &flows };
+    let insert = |bodies: &[_], silhouettes: &[_], rng: &mut Rng, progress: &mut dyn Progress| {
+        insert::insert(&ground, bodies, silhouettes, rng, |done| progress.step("insert", done))
+    };
     complete &= refine(&mut bodies, 0..inserted_at, progress);
     if complete {
-        let step = |done| progress.step("insert", done);
-        complete &=
-            insert::insert(&mut bodies, &templates, &usable, &flows, &prepared, &mut rng.fork(), step);
+        let silhouettes: Vec<_> = bodies.iter().map(refine::Body::outline).collect();
+        let (small, finished) = insert(&bodies, &silhouettes, &mut rng.fork(), progress);
+        bodies.extend(small);
+        complete &= finished;
         complete &= refine(&mut bodies, inserted_at..iterations, progress);
     }
     let mut placement = Placement::new(&prepared);
     complete &= placement.place(&bodies, &templates, &prepared, |done| progress.step("place", done));
+    if complete {
+        // Where one found no place after all, a smaller one may.
+        let (small, finished) = insert(&bodies, &placement.silhouettes, &mut rng.fork(), progress);
+        complete &= finished && placement.place(&small, &templates, &prepared, |_| true);
+    }
     // Out of time, dots would fill what elements should have.
     let (mut fillers, mut negative) = (Vec::new(), Vec::new());
     if complete {
@@ -214,4 +225,33 @@ fn check_work(prepared: &Prepared) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rinceau_format::{Document, Selection};
+
+    /// The area of all envelopes together never shrinks, from one iteration to the next.
+    #[test]
+    fn refinement_is_monotone() {
+        let svg = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 400 400'><path class='rinceau-container' d='M200,110C230,10 390,20 380,150C372,240 260,310 200,385C140,310 28,240 20,150C10,20 170,10 200,110Z'/></svg>";
+        let scene =
+            Document::from_bytes(svg.as_bytes().to_vec()).unwrap().scene(&Selection::default()).unwrap();
+        let params = Params::from_values(&crate::params::Values::default());
+        let prepared = prepare::prepare(&params, &scene).unwrap();
+        let templates = library::templates(&scene).unwrap();
+        let usable = vec![library::usable(&templates, &prepared.fields[0], &scene).unwrap()];
+        let (mut rng, mut progress) = (Rng::new(3), crate::Deadline::new(None));
+        let (blobs, flows, _) = rooms(&prepared, &templates, &usable, &mut rng, &mut progress);
+        let (mut bodies, _) = cast::cast(&prepared, &templates, &usable, &blobs, &mut rng, |_| true);
+        let all = |bodies: &[refine::Body]| bodies.iter().map(|body| body.fit.area).sum::<f64>();
+        let (first, mut last) = (all(&bodies), all(&bodies));
+        for i in 0..15 {
+            refine::refine(&mut bodies, &templates, &flows, &prepared, i..i + 1, |_| true);
+            assert!(all(&bodies) >= last, "iteration {i}: {} after {last}", all(&bodies));
+            last = all(&bodies);
+        }
+        assert!(last > 1.05 * first, "{first} {last}");
+    }
 }

@@ -146,7 +146,7 @@ impl Sizes {
         const AROUND_FILLERS: f64 = 0.7;
         let chosen = params.min_gap.to_user(px_per_unit) > 0.0;
         let filler_gap = or(params.filler_gap, if chosen { gap } else { AROUND_FILLERS * gap });
-        let edge = or(params.edge, 0.3 * gap);
+        let edge = or(params.edge, gap / 2.0);
         let (rounding, bridge) = (or(params.rounding, 0.0), or(params.bridge, gap));
         Sizes { spacing, min_length, max_length, gap, filler_gap, edge, rounding, bridge }
     }

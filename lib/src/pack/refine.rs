@@ -118,8 +118,14 @@ pub(super) fn refine(
                 refitted(body, blob, templates, field, RETHINK.contains(&iteration))
             })
             .collect();
+        // What all gain together is never less than nothing: if it were, only those that gain go on. Each moves
+        // within its own share of the space, so it does not matter who else moves.
+        let gain = |(body, next): (&Body, &Option<Body>)| {
+            next.as_ref().map_or(0.0, |next| next.fit.area - body.fit.area)
+        };
+        let loses = bodies.iter().zip(&next).map(gain).sum::<f64>() < 0.0;
         for (body, next) in bodies.iter_mut().zip(next) {
-            match next {
+            match next.filter(|next| !loses || next.fit.area >= body.fit.area) {
                 Some(next) => *body = next,
                 None => body.still += 1,
             }
