@@ -273,6 +273,41 @@ fn tight_turns_do_not_fold() {
     }
 }
 
+/// Strokes count: nothing comes nearer to one than the gap.
+#[test]
+fn strokes_keep_the_gap_too() {
+    let element = |id: &str, stroke: f64| {
+        format!(
+            "<g class='rinceau-element' id='{id}'><path d='M0,0C30,22 70,22 100,0C70,-22 30,-22 0,0Z' stroke='#222' stroke-width='{stroke}'/><path class='rinceau-spine' d='M0,0H100' fill='none'/></g>"
+        )
+    };
+    let scene = scene(&format!(
+        "<path class='rinceau-container' d='{HEART}'/>{}{}",
+        element("a", 6.0),
+        element("b", 9.0)
+    ));
+    let artwork = packed(&scene, &[("spacing", "44"), ("min-gap", "3"), ("elements", "a"), ("fillers", "b")]);
+    let all: Vec<(Piece, f64)> = ["elements", "fillers"]
+        .into_iter()
+        .flat_map(|name| {
+            let items = &artwork.group(name).unwrap().items;
+            let strokes = items.iter().map(|item| item.parts[0].style.stroke_width().unwrap() / 2.0);
+            pieces(&artwork, name).into_iter().zip(strokes).collect::<Vec<_>>()
+        })
+        .collect();
+    assert!(artwork.counts["fillers"] > 10.0, "{:?}", artwork.counts);
+    for (i, (piece, stroke)) in all.iter().enumerate() {
+        for (other, others) in &all[..i] {
+            let least = 3.0 + stroke + others;
+            assert!(
+                distance(piece, other, least) >= least - 2.0 * SLACK,
+                "{i}: {} < {least}",
+                distance(piece, other, least)
+            );
+        }
+    }
+}
+
 /// Elements with one node and with ten thousand, of many colours, with gradients and strokes.
 #[test]
 fn awkward_elements_are_bent() {

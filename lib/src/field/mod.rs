@@ -1,5 +1,6 @@
 //! Directions of flow inside a region, and the streamlines that follow them.
 
+mod depth;
 pub mod direction;
 pub mod streamline;
 

@@ -72,7 +72,10 @@ fn fill_field(
 ) -> bool {
     let spacing = field.sizes.spacing;
     let (smallest, largest) = (SMALLEST * spacing, LARGEST * spacing);
-    let mut gaps = Gaps::new(field, &placement.silhouettes, largest, field.sizes.filler_gap);
+    // Strokes reach beyond the outlines that distances are measured to.
+    let own = kinds.motifs.iter().map(|motif| motif.widest_stroke(largest, kinds.templates));
+    let stroke = own.fold(placement.widest_stroke(), f64::max);
+    let mut gaps = Gaps::new(field, &placement.silhouettes, largest, field.sizes.filler_gap + stroke);
     let mut heap = gaps.middles(smallest);
     const ASK_EVERY: usize = 256;
     let mut popped = 0;
@@ -97,7 +100,7 @@ fn fill_field(
         let radius = radius.min(largest);
         let (filler, outlines) = best(index, field, kinds, placement, &gaps, (centre, radius));
         for outline in &outlines {
-            placement.add_outline(outline);
+            placement.add_outline(outline, filler.motif.stroke(filler.transform(), kinds.templates));
             if filler.motif != Motif::Dot {
                 gaps.add(outline);
             }
@@ -106,7 +109,7 @@ fn fill_field(
             gaps.add_disc(centre, radius);
         }
         // What is left of a long gap begins beside the new filler.
-        let beside = radius + field.sizes.filler_gap + smallest;
+        let beside = radius + field.sizes.filler_gap + stroke + smallest;
         for k in 0..8 {
             let angle = f64::from(k) * std::f64::consts::FRAC_PI_4;
             let at = centre + beside * Vec2::new(libm::cos(angle), libm::sin(angle));
@@ -144,7 +147,11 @@ fn best(
         // The last always goes.
         let last = forms.pop().map(|form| in_place(motif, form));
         let mut tried = forms.into_iter().map(|form| in_place(motif, form));
-        tried.find(|(_, outlines)| placement.filler_goes(outlines, field)).or(last)
+        let goes = |(filler, outlines): &(Filler, Vec<Contour>)| {
+            let stroke = motif.stroke(filler.transform(), kinds.templates);
+            placement.filler_goes(outlines, stroke, field)
+        };
+        tried.find(goes).or(last)
     };
     let all = kinds.motifs.iter().filter_map(|&motif| largest(motif));
     let best = all.reduce(|best, other| if other.0.area > best.0.area { other } else { best });

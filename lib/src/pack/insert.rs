@@ -37,12 +37,12 @@ pub(super) struct Ground<'a> {
     pub flows: &'a [Option<DirectionField>],
 }
 
-/// Small elements between others, whose outlines are `silhouettes`, in every container that is refined. False if
+/// Small elements between others, whose outlines are `silhouettes` with half a `stroke` around them, in every container that is refined. False if
 /// the time ran out first.
 pub(super) fn insert(
     &Ground { prepared, templates, usable, flows }: &Ground,
     bodies: &[Body],
-    silhouettes: &[Contour],
+    (silhouettes, stroke): (&[Contour], f64),
     rng: &mut Rng,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> (Vec<Body>, bool) {
@@ -59,7 +59,7 @@ pub(super) fn insert(
         if field.params.iterations == 0 {
             continue;
         }
-        let mut gaps = Gaps::new(field, silhouettes, field.sizes.spacing, field.sizes.gap);
+        let mut gaps = Gaps::new(field, silhouettes, field.sizes.spacing, field.sizes.gap + stroke);
         let mut heap = gaps.middles(NARROWEST * field.sizes.spacing);
         const ASK_EVERY: usize = 64;
         let mut popped = 0;

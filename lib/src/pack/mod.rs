@@ -9,9 +9,10 @@
 //! 4. Measure the room around each streamline (4.4): `blob`.
 //! 5. Choose the element for each room, bend it along the streamline (4.5): `choose`, `place`.
 //!
-//! 6. Refine the composition: shift, extend and grow (4.6): `refine`.
-//!
-//! 7. Fill the gaps that are left with dots (6) or with their own shapes (5): `fill`, `negative`.
+//! 6. Refine the composition: shift, extend and grow (4.6), with small elements in the gaps that show
+//!    (6): `refine`, `insert`.
+//! 7. Fill the gaps that are left (6), or draw their own shapes (5): `fill`, `negative`.
+//! 8. Draw it, worn, rounded or as one piece if that is asked for (5): `artwork`, `finish`, `connect`.
 //!
 //! Departures are argued where they happen: lines on the boundary (`lines`), lines cut into
 //! equal pieces (`field::streamline`), rooms in closed form (`blob`), trial fits and smooth
@@ -50,9 +51,11 @@ use crate::rng::Rng;
 use crate::shapes::closed;
 use artwork::Made;
 use blob::Blob;
+use insert::Ground;
 use place::Placement;
 use prepare::Prepared;
 use rinceau_format::{Artwork, Error, Scene};
+use std::ops::Range;
 use template::{Side, Template};
 
 /// Elements of one run at most, estimated before anything is traced.
@@ -78,36 +81,10 @@ pub fn generate(
     let motifs = prepared.fields.iter().map(|field| library::motifs(&templates, field, scene));
     let motifs = motifs.collect::<Result<Vec<_>, _>>()?;
 
-    let (blobs, flows, mut complete) = rooms(&prepared, &templates, &usable, rng, progress);
-    let step = |done| progress.step("cast", done);
-    let (mut bodies, finished) = cast::cast(&prepared, &templates, &usable, &blobs, &mut rng.fork(), step);
-    complete &= finished;
-    // Some room shows only once the first elements have moved.
-    let iterations = prepared.fields.iter().map(|field| field.params.iterations).max().unwrap_or(0);
-    let inserted_at = iterations / 3;
-    let refine = |bodies: &mut Vec<_>, part: std::ops::Range<usize>, progress: &mut dyn Progress| {
-        refine::refine(bodies, &templates, &flows, &prepared, part, |done| progress.step("refine", done))
-    };
-    let ground =
-        insert::Ground { prepared: &prepared, templates: &templates, usable: &usable, flows: &flows };
-    let insert = |bodies: &[_], silhouettes: &[_], rng: &mut Rng, progress: &mut dyn Progress| {
-        insert::insert(&ground, bodies, silhouettes, rng, |done| progress.step("insert", done))
-    };
-    complete &= refine(&mut bodies, 0..inserted_at, progress);
-    if complete {
-        let silhouettes: Vec<_> = bodies.iter().map(refine::Body::outline).collect();
-        let (small, finished) = insert(&bodies, &silhouettes, &mut rng.fork(), progress);
-        bodies.extend(small);
-        complete &= finished;
-        complete &= refine(&mut bodies, inserted_at..iterations, progress);
-    }
-    let mut placement = Placement::new(&prepared);
-    complete &= placement.place(&bodies, &templates, &prepared, |done| progress.step("place", done));
-    if complete {
-        // Where one found no place after all, a smaller one may.
-        let (small, finished) = insert(&bodies, &placement.silhouettes, &mut rng.fork(), progress);
-        complete &= finished && placement.place(&small, &templates, &prepared, |_| true);
-    }
+    let (blobs, flows, traced) = rooms(&prepared, &templates, &usable, rng, progress);
+    let ground = Ground { prepared: &prepared, templates: &templates, usable: &usable, flows: &flows };
+    let (mut placement, composed) = compose(&ground, &blobs, rng, progress);
+    let mut complete = traced && composed;
     // Out of time, dots would fill what elements should have.
     let (mut fillers, mut negative) = (Vec::new(), Vec::new());
     if complete {
@@ -140,6 +117,38 @@ pub fn generate(
     artwork.groups.extend(flow::flow(&prepared, &flows));
     artwork.counts.insert("flow-angle".to_owned(), flow_angle(&placement, &flows));
     Ok(artwork)
+}
+
+/// Steps 5 and 6: elements in the rooms, refined, and in their places. False if the time ran out first.
+fn compose(ground: &Ground, blobs: &[Blob], rng: &mut Rng, progress: &mut dyn Progress) -> (Placement, bool) {
+    let &Ground { prepared, templates, usable, flows } = ground;
+    let step = |done| progress.step("cast", done);
+    let (mut bodies, mut complete) = cast::cast(prepared, templates, usable, blobs, &mut rng.fork(), step);
+    let refine = |bodies: &mut Vec<_>, part: Range<usize>, progress: &mut dyn Progress| {
+        refine::refine(bodies, templates, flows, prepared, part, |done| progress.step("refine", done))
+    };
+    let insert = |bodies: &[_], silhouettes: (&[_], f64), rng: &mut Rng, progress: &mut dyn Progress| {
+        insert::insert(ground, bodies, silhouettes, rng, |done| progress.step("insert", done))
+    };
+    // Some room shows only once the first elements have moved.
+    let iterations = prepared.fields.iter().map(|field| field.params.iterations).max().unwrap_or(0);
+    let inserted_at = iterations / 3;
+    complete &= refine(&mut bodies, 0..inserted_at, progress);
+    if complete {
+        let silhouettes: Vec<_> = bodies.iter().map(refine::Body::outline).collect();
+        let (small, finished) = insert(&bodies, (&silhouettes, 0.0), &mut rng.fork(), progress);
+        bodies.extend(small);
+        complete = finished && refine(&mut bodies, inserted_at..iterations, progress);
+    }
+    let mut placement = Placement::new(prepared);
+    complete &= placement.place(&bodies, templates, prepared, |done| progress.step("place", done));
+    if complete {
+        // Where one found no place after all, a smaller one may.
+        let (small, finished) =
+            insert(&bodies, (&placement.silhouettes, placement.widest_stroke()), &mut rng.fork(), progress);
+        complete = finished && placement.place(&small, templates, prepared, |_| true);
+    }
+    (placement, complete)
 }
 
 /// Mean angle between elements and the flow where they lie, in degrees. Fixed spines need not follow it.

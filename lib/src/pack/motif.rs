@@ -36,6 +36,24 @@ impl Motif {
         }
     }
 
+    /// Half its stroke width in place.
+    pub fn stroke(self, transform: Affine, templates: &[Template]) -> f64 {
+        match self {
+            Motif::Element(i) => {
+                templates[i].stroke * (transform.determinant().abs() / templates[i].length).sqrt()
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// The most that this can be in discs of a radius.
+    pub fn widest_stroke(self, radius: f64, templates: &[Template]) -> f64 {
+        match self {
+            Motif::Element(i) => templates[i].stroke * SCALES[0] * radius / farthest(&templates[i]),
+            _ => 0.0,
+        }
+    }
+
     /// Its forms for a pocket, the best first; the last lies in the disc and always goes. A form is its
     /// parts; the outline of all of them together is that of the `outer` ones of a template.
     pub fn forms(self, pocket: &Pocket, templates: &[Template]) -> Vec<Form> {
@@ -56,10 +74,9 @@ impl Motif {
             }
             Motif::Element(template) => {
                 let template = &templates[template];
-                let farthest = template.length.hypot(2.0 * template.half_width) / 2.0;
+                let farthest = farthest(template);
                 // (u, v) about the middle of the spine.
                 let middle = Affine::new([template.length, 0.0, 0.0, 1.0, -template.length / 2.0, 0.0]);
-                const SCALES: [f64; 5] = [2.2, 1.8, 1.5, 1.25, 1.0];
                 let form = |scale: f64| Form {
                     outer: template.outer.clone(),
                     transform: frame(scale * r / farthest) * middle,
@@ -68,6 +85,14 @@ impl Motif {
             }
         }
     }
+}
+
+/// Scales of an element in its disc, and out of it where there is more room.
+const SCALES: [f64; 5] = [2.2, 1.8, 1.5, 1.25, 1.0];
+
+/// How far an element reaches from the middle of its spine at most.
+fn farthest(template: &Template) -> f64 {
+    (template.length / 2.0 + template.stroke).hypot(template.half_width)
 }
 
 /// A filler before and after it is put in place.

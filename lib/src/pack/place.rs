@@ -75,6 +75,8 @@ pub(super) struct Placement {
     outlines: SegmentGrid,
     /// Half stroke width of each placed element.
     strokes: Vec<f64>,
+    /// The widest of them.
+    widest: f64,
     pub placed: Vec<Placed>,
     /// Outer contours of everything placed, without holes.
     pub silhouettes: Vec<Contour>,
@@ -87,6 +89,7 @@ impl Placement {
         Placement {
             outlines: SegmentGrid::new(prepared.bounds, spacing / 6.0),
             strokes: Vec::new(),
+            widest: 0.0,
             placed: Vec::new(),
             silhouettes: Vec::new(),
         }
@@ -150,6 +153,7 @@ impl Placement {
         let owner = self.strokes.len() as u32;
         outlines.iter().for_each(|outline| self.outlines.insert_contour(outline, owner));
         self.strokes.push(stroke);
+        self.widest = self.widest.max(stroke);
         self.placed.push(Placed {
             field: body.blob.field,
             kind: body.blob.kind,
@@ -164,16 +168,17 @@ impl Placement {
         self.silhouettes.extend(silhouette);
     }
 
-    /// Adds the outline of something that is not an element.
-    pub fn add_outline(&mut self, outline: &Contour) {
+    /// Adds the outline of something that is not an element, and half its stroke width.
+    pub fn add_outline(&mut self, outline: &Contour, stroke: f64) {
         let owner = self.strokes.len() as u32;
-        self.strokes.push(0.0);
+        self.strokes.push(stroke);
+        self.widest = self.widest.max(stroke);
         self.outlines.insert_contour(outline, owner);
     }
 
     /// Half the width of the widest stroke.
     pub fn widest_stroke(&self) -> f64 {
-        self.strokes.iter().copied().fold(0.0, f64::max)
+        self.widest
     }
 
     /// The outlines of everything placed.
@@ -182,9 +187,9 @@ impl Placement {
     }
 
     /// True if the outlines of a filler are inside the region and keep its gap to what is placed.
-    pub fn filler_goes(&self, outlines: &[Contour], field: &Field) -> bool {
-        let margin = (field.sizes.tolerance() - field.sizes.edge).max(0.0);
-        let gap = field.sizes.safe(field.sizes.filler_gap);
+    pub fn filler_goes(&self, outlines: &[Contour], stroke: f64, field: &Field) -> bool {
+        let margin = stroke + (field.sizes.tolerance() - field.sizes.edge).max(0.0);
+        let gap = field.sizes.safe(field.sizes.filler_gap) + stroke;
         outlines.iter().all(|outline| is_inside(outline, margin, field) && self.is_clear(outline, gap))
     }
 
@@ -199,7 +204,7 @@ impl Placement {
     fn is_clear(&self, outline: &Contour, gap: f64) -> bool {
         sides(outline).all(|(p, q)| {
             let mut clear = true;
-            self.outlines.visit(p, q, gap, |a, b, owner| {
+            self.outlines.visit(p, q, gap + self.widest, |a, b, owner| {
                 clear = segment_segment(p, q, a, b) >= gap + self.strokes[owner as usize];
                 clear
             });
