@@ -1,6 +1,5 @@
 //! Placed elements to an artwork with its sublayers and counts.
 
-use super::connect::{self, Piece};
 use super::fill::Filler;
 use super::finish::Finish;
 use super::motif::Motif;
@@ -14,7 +13,7 @@ use crate::geom::polyline;
 use crate::palette::palette;
 use kurbo::{Affine, BezPath, Point};
 use rayon::prelude::*;
-use rinceau_format::{Artwork, Error, Group, Item, Part, Scene, Style};
+use rinceau_format::{Artwork, Group, Item, Part, Scene, Style};
 use std::collections::BTreeMap;
 
 /// What one run has made.
@@ -83,9 +82,7 @@ impl Made<'_> {
 }
 
 /// The result: elements, fillers, copies of fixed elements, and the final spines, hidden.
-///
-/// Errors: a single piece is asked for, and nothing is as thick as a bridge.
-pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Result<Artwork, Error> {
+pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
     let prepared = made.prepared;
     let decimals = rinceau_format::decimals_for(prepared.input_size);
     let spacing = prepared.fields.iter().map(|field| field.sizes.spacing).fold(0.0, f64::max);
@@ -137,34 +134,13 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Result<Artw
             .collect(),
         ..Group::default()
     };
-    let mut counts = made.counts();
     let mut groups = vec![elements, fillers, negative];
-    if let Some(Piece { group, bridges, too_thin }) = joined(made, scene, &groups)? {
-        groups = vec![group];
-        counts.insert("bridges".into(), bridges as f64);
-        counts.insert("too-thin".into(), too_thin as f64);
-    }
     groups.extend([fixed, spines]);
     groups.retain(|group| !group.items.is_empty());
     let mut warnings = scene.warnings.clone();
     warnings.extend(prepared.warnings.iter().cloned());
     warnings.extend(made.bare_spines());
-    let too_thin = counts.get("too-thin").copied().unwrap_or(0.0);
-    if too_thin > 0.0 {
-        warnings
-            .push(format!("{too_thin} elements are thinner than a bridge and were left out of the piece"));
-    }
-    Ok(Artwork { groups, complete, warnings, counts, decimals, ..Artwork::default() })
-}
-
-/// Everything drawn as one piece, if that is asked for: by the first container, since it is one for all.
-fn joined(made: &Made, scene: &Scene, groups: &[Group]) -> Result<Option<Piece>, Error> {
-    let Some(first) = made.prepared.fields.first().filter(|field| field.params.connect) else {
-        return Ok(None);
-    };
-    let tone = made.palette(0, scene)[0];
-    let groups: Vec<&Group> = groups.iter().collect();
-    connect::piece(&groups, first.sizes.bridge, first.sizes.tolerance(), tone).map(Some)
+    Artwork { groups, complete, warnings, counts: made.counts(), decimals, ..Artwork::default() }
 }
 
 /// A filler, in the accent if it is built in, so that the smallest shapes are seen as one family.

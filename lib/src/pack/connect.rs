@@ -1,78 +1,100 @@
 //! One connected piece, for cutters: nothing thinner than the bridge width, and bridges of that width
 //! from piece to piece.
 //!
-//! Every piece is opened (made thinner by half the width, then wider again), which leaves it with no part
-//! thinner than the width: a union of discs of that diameter. A bridge from a nearest point to a nearest
-//! point is one too, and so is the union of all, so the width holds everywhere. Bridges are the edges of a
-//! shortest tree (Kruskal) over the distances of neighbours.
+//! The core of a piece is where a disc of that width can be without leaving it; what such discs cover is the piece
+//! without what is thinner. Cores are joined by lines, the edges of a shortest tree (Kruskal), in containers
+//! as from one to the next. The one piece is what discs cover whose middles run through all cores and along all
+//! lines, so the width holds everywhere, also where two parts of a piece had hung by a thinner neck.
 
-use crate::geom::boolean::{Contour, is_outer, offset, signed_area, simplified, stroked, union};
-use crate::geom::near::PointTable;
-use crate::geom::polyline::simplified_closed;
+use crate::geom::boolean::{Contour, is_outer, offset, signed_area, simplified, stroked};
+use crate::geom::polyline::{self, simplified_closed};
+use crate::geom::triangulate::delaunay;
 use crate::ink::area_of;
-use kurbo::{Affine, BezPath, Point, Rect};
-use rinceau_format::{Error, Group, Item, Part, Style};
+use kurbo::{Affine, BezPath, Point};
+use rayon::prelude::*;
+use rinceau_format::{Artwork, Error, Group, Item, Part, Style};
 
-/// The piece made of many.
-pub(super) struct Piece {
-    pub group: Group,
-    pub bridges: usize,
-    /// Parts that were thinner than a bridge.
-    pub too_thin: usize,
-}
+/// Sublayers that become one piece.
+const JOINED: [&str; 3] = ["elements", "fillers", "negative"];
 
-/// Joins the drawn items of some groups. `width` of bridges, `tone` of the piece.
+/// Joins all that an artwork draws to one piece, in a sublayer of its own in their place. `width` is that of
+/// bridges, `tone` the colour of the piece. False, and nothing changed, if the time ran out first.
 ///
 /// Errors: nothing is as thick as a bridge.
-pub(super) fn piece(groups: &[&Group], width: f64, tolerance: f64, tone: &str) -> Result<Piece, Error> {
-    let mut nodes = Vec::new();
-    let mut too_thin = 0;
-    for item in groups.iter().flat_map(|group| &group.items) {
+pub(super) fn join(
+    artwork: &mut Artwork,
+    width: f64,
+    tolerance: f64,
+    tone: &str,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> Result<bool, Error> {
+    // Arcs are made of chords, which lie inside them by a share of the radius.
+    const ROUNDING: f64 = 0.02;
+    let radius = 0.5 * width * (1.0 + ROUNDING) + tolerance;
+    let is_joined = |group: &&Group| JOINED.contains(&group.name.as_str());
+    let items: Vec<&Item> = artwork.groups.iter().filter(is_joined).flat_map(|group| &group.items).collect();
+    // Where a disc of that radius can be without leaving the item.
+    let core = |item: &&Item| -> Vec<Contour> {
         let covered: Vec<Contour> =
             item.parts.iter().flat_map(|part| area_of(part, 0.5 * tolerance)).collect();
         // Slits that are narrower than a bridge would cut a leaf into its ribs.
-        let solid = offset(&offset(&simplified(&covered, false), 0.5 * width), -0.5 * width);
-        let opened = opened(&solid, width);
-        if opened.is_empty() {
-            too_thin += 1;
+        let grown = light(offset(&light(simplified(&covered, false), tolerance), 0.5 * width), tolerance);
+        let closed = light(offset(&grown, -0.5 * width), tolerance);
+        light(offset(&closed, -radius), tolerance)
+    };
+    let (mut cores, mut too_thin) = (Vec::new(), 0);
+    const ASK_EVERY: usize = 128;
+    for (index, items_ahead) in items.chunks(ASK_EVERY).enumerate() {
+        if !go_on((index * ASK_EVERY) as f64 / items.len() as f64) {
+            return Ok(false);
         }
-        nodes.extend(connected(opened));
+        let all: Vec<Vec<Contour>> = items_ahead.par_iter().map(core).collect();
+        too_thin += all.iter().filter(|contours| contours.is_empty()).count();
+        cores.extend(all.into_iter().flat_map(connected));
     }
-    if nodes.is_empty() {
+    if cores.is_empty() {
         let remedy = "Set the bridge width (--bridge) lower, or the element width (--spacing) higher";
         return Err(Error::new("bridge-too-wide", "No element is as thick as a bridge", remedy));
     }
-    let bridges = bridges(&nodes, width);
-    let mut all: Vec<Contour> = nodes.into_iter().flatten().collect();
-    for [p, q] in &bridges {
-        let along = (*q - *p) / (*q - *p).hypot().max(f64::MIN_POSITIVE);
-        // Half a width into both, where a disc of that size lies.
-        let ends = [*p - 0.5 * width * along, *q + 0.5 * width * along];
-        all = [all, stroked(&ends, false, width * (1.0 + ROUNDING))].concat();
+    let bridges = bridges(&cores, width);
+    let path = united(&cores, &bridges, radius, tolerance);
+    let part = Part { path, transform: Affine::IDENTITY, style: Style::filled(tone) };
+    artwork.groups.retain(|group| !is_joined(&group));
+    let items = vec![Item::new("piece", vec![part])];
+    artwork.groups.insert(0, Group { name: "piece".into(), items, ..Group::default() });
+    artwork.counts.insert("bridges".into(), bridges.len() as f64);
+    artwork.counts.insert("too-thin".into(), too_thin as f64);
+    if too_thin > 0 {
+        artwork
+            .warnings
+            .push(format!("{too_thin} shapes are thinner than a bridge and were left out of the piece"));
     }
+    Ok(true)
+}
+
+/// The outline of all that discs of a radius cover whose middles lie in cores or on bridges.
+fn united(cores: &[Vec<Contour>], bridges: &[[Point; 2]], radius: f64, tolerance: f64) -> BezPath {
+    let grown: Vec<Vec<Contour>> =
+        cores.par_iter().map(|core| light(offset(core, radius), tolerance)).collect();
+    let mut all: Vec<Contour> = grown.into_iter().flatten().collect();
+    all.extend(bridges.iter().flat_map(|bridge| stroked(bridge, false, 2.0 * radius)));
     let mut path = BezPath::new();
     // A hole that a bridge would fill is a speck.
-    let least = 0.25 * width * width;
-    let one = union(&simplified(&all, false), &[]);
+    let least = radius * radius;
+    let one = simplified(&all, false);
     for contour in one.into_iter().filter(|contour| is_outer(contour) || -signed_area(contour) >= least) {
         let contour = simplified_closed(&contour, 0.25 * tolerance);
         path.move_to(contour[0]);
         contour[1..].iter().for_each(|&p| path.line_to(p));
         path.close_path();
     }
-    let part = Part { path, transform: Affine::IDENTITY, style: Style::filled(tone) };
-    let items = vec![Item::new("piece", vec![part])];
-    let group = Group { name: "piece".into(), items, ..Group::default() };
-    Ok(Piece { group, bridges: bridges.len(), too_thin })
+    path
 }
 
-/// Arcs are made of chords, which lie inside them by this share of the radius.
-const ROUNDING: f64 = 0.02;
-
-/// What is left of contours where they are at least `width` thick.
-fn opened(contours: &[Contour], width: f64) -> Vec<Contour> {
-    let radius = 0.5 * width * (1.0 + ROUNDING);
-    offset(&offset(contours, -radius), radius)
+/// Contours without the points that nobody would miss: offsets cost more than their number.
+fn light(contours: Vec<Contour>, tolerance: f64) -> Vec<Contour> {
+    let lighter = contours.iter().map(|contour| simplified_closed(contour, 0.5 * tolerance));
+    lighter.filter(|contour| contour.len() > 2).collect()
 }
 
 /// Contours by connected part: an outer one with its holes.
@@ -105,57 +127,59 @@ fn encloses(contour: &Contour, at: Point) -> bool {
     inside
 }
 
-/// The shortest bridges that join all nodes, from outline to outline.
-fn bridges(nodes: &[Vec<Contour>], width: f64) -> Vec<[Point; 2]> {
-    let mut samples: Vec<(Point, u32)> = Vec::new();
-    for (node, contours) in nodes.iter().enumerate() {
+/// The shortest bridges that join all cores: a shortest tree is among the edges of a
+/// Delaunay triangulation of their samples.
+fn bridges(cores: &[Vec<Contour>], width: f64) -> Vec<[Point; 2]> {
+    let (mut samples, mut of) = (Vec::new(), Vec::new());
+    for (node, contours) in cores.iter().enumerate() {
         for contour in contours {
-            let Some(&last) = contour.last() else { continue };
-            let mut previous = last;
-            for &p in contour {
-                let steps = (previous.distance(p) / width).ceil().clamp(1.0, 1e4) as usize;
-                samples.extend((1..=steps).map(|k| (previous.lerp(p, k as f64 / steps as f64), node as u32)));
-                previous = p;
-            }
+            let closed: Vec<Point> = contour.iter().chain(contour.first()).copied().collect();
+            let steps = (polyline::length(&closed) / (0.5 * width)).ceil().clamp(3.0, 1e5) as usize;
+            samples.extend(polyline::resample(&closed, steps).into_iter().skip(1));
+            of.resize(samples.len(), node);
         }
     }
-    let Some(&(first, _)) = samples.first() else { return Vec::new() };
-    let bounds = samples.iter().fold(Rect::from_points(first, first), |bounds, (p, _)| bounds.union_pt(*p));
-    let farthest = bounds.size().max_side() * 2.0;
-    let mut sets = Sets((0..nodes.len()).collect());
-    let mut left = nodes.len() - 1;
-    let mut all = Vec::new();
-    let mut reach = 4.0 * width;
-    while left > 0 {
-        let table = PointTable::new(bounds, reach, &samples);
-        let mut edges: Vec<(f64, u32, u32, Point, Point)> = Vec::new();
-        for &(p, node) in &samples {
-            let own = sets.find(node as usize);
-            // The nearest of another part is enough: whatever else is joined comes by its own samples.
-            let mut nearest: Option<(f64, u32, Point)> = None;
-            for (q, other) in table.near(p, reach) {
-                let distance = p.distance(q);
-                let is_nearer = nearest.is_none_or(|(least, ..)| distance < least);
-                if other != node && distance <= reach && is_nearer && sets.find(other as usize) != own {
-                    nearest = Some((distance, other, q));
-                }
-            }
-            edges.extend(nearest.map(|(distance, other, q)| (distance, node, other, p, q)));
-        }
-        edges.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-        for (_, node, other, p, q) in edges {
-            if sets.join(node as usize, other as usize) {
-                all.push([p, q]);
-                left -= 1;
-            }
-        }
-        // Nothing lies farther apart than the whole is wide.
-        if reach > farthest {
-            break;
-        }
-        reach *= 2.0;
+    let mut edges: Vec<(f64, usize, usize)> = delaunay(&samples)
+        .into_iter()
+        .flat_map(|[a, b, c]| [(a, b), (b, c), (c, a)])
+        .filter(|&(a, b)| of[a] != of[b])
+        .map(|(a, b)| (samples[a].distance_squared(samples[b]), a.min(b), a.max(b)))
+        .collect();
+    edges.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+    let mut sets = Sets((0..cores.len()).collect());
+    let shortest = edges.into_iter().filter(|&(_, a, b)| sets.join(of[a], of[b]));
+    shortest.map(|(_, a, b)| nearest(&cores[of[a]], &cores[of[b]], samples[b])).collect()
+}
+
+/// The nearest places of two cores, from a place on the second that is nearly one of them.
+fn nearest(first: &[Contour], second: &[Contour], mut q: Point) -> [Point; 2] {
+    const ROUNDS: usize = 8;
+    let mut p = q;
+    for _ in 0..ROUNDS {
+        p = foot(first, q);
+        q = foot(second, p);
     }
-    all
+    [p, q]
+}
+
+/// The place on some contours that is nearest to another.
+fn foot(contours: &[Contour], at: Point) -> Point {
+    let mut best = (f64::INFINITY, at);
+    for contour in contours {
+        let Some(&last) = contour.last() else { continue };
+        let mut previous = last;
+        for &p in contour {
+            let along = p - previous;
+            let t = ((at - previous).dot(along) / along.hypot2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            let on = previous + t * along;
+            let squared = on.distance_squared(at);
+            if squared < best.0 {
+                best = (squared, on);
+            }
+            previous = p;
+        }
+    }
+    best.1
 }
 
 /// Disjoint sets.

@@ -46,6 +46,7 @@ mod thread;
 pub use params::Params;
 
 use crate::field::{DirectionField, LineKind};
+use crate::palette::palette;
 use crate::progress::Progress;
 use crate::rng::Rng;
 use crate::shapes::closed;
@@ -110,7 +111,14 @@ pub fn generate(
         },
         scene,
         complete,
-    )?;
+    );
+    // By the first container, since it is one piece for all of them.
+    if let Some(first) = prepared.fields.first().filter(|field| field.params.connect) {
+        let tone = palette(&first.params.palette, scene.containers[first.container].fill.as_deref())[0];
+        let step = |done| progress.step("connect", done);
+        let (bridge, tolerance) = (first.sizes.bridge, first.sizes.tolerance());
+        artwork.complete &= connect::join(&mut artwork, bridge, tolerance, tone, step)?;
+    }
     if prepared.fields.iter().any(|field| field.params.show_gaps) {
         artwork.groups.extend(map::map(scene, &artwork)?);
     }
