@@ -198,12 +198,30 @@ pub fn command(matches: &ArgMatches) -> Result<(), Error> {
     }
 }
 
+/// Errors before any work is done: a report that would take the place of a drawing, or has no folder.
+fn check_report(report: &Path, drawings: [Option<&Path>; 2]) -> Result<(), Error> {
+    let whole = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if drawings.into_iter().flatten().any(|drawing| whole(drawing) == whole(report)) {
+        let sentence = "The report would take the place of the drawing";
+        return Err(Error::new("bad-parameter", sentence, "Give --report a file of its own"));
+    }
+    let folder = report.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if folder.is_some_and(|folder| !folder.is_dir()) {
+        let sentence = format!("There is no folder for the report '{}'", report.display());
+        return Err(Error::new("bad-parameter", sentence, "Create it, or give --report another file"));
+    }
+    Ok(())
+}
+
 fn generator_command(generator: &'static Generator, matches: &ArgMatches) -> Result<(), Error> {
     let mut values = Values::default();
     for spec in generator.table {
         if let Some(value) = matches.get_one::<String>(spec.name) {
             values.set(generator.table, spec.name, value)?;
         }
+    }
+    if let Some(report) = matches.get_one::<PathBuf>("report") {
+        check_report(report, [input(matches), path(matches, "out")])?;
     }
     let seed = *matches.get_one::<u64>("seed").unwrap_or(&1);
     let time_limit =

@@ -1065,3 +1065,20 @@ fn threads_do_not_show() {
         assert!(one == drawn_with("2") && one == drawn_with("5"), "{generator}");
     }
 }
+
+/// A report that would take the place of a drawing is refused before anything is written.
+#[test]
+fn a_report_is_kept_apart_from_drawings() {
+    let folder = support::folder();
+    let drawing = support::svg("<circle class='rinceau-container' cx='50' cy='50' r='40'/>");
+    let input = support::file(&folder, "in.svg", &drawing);
+    let out = folder.path().join("out.svg");
+    for report in [input.clone(), out.clone(), folder.path().join("none/report.json")] {
+        let done =
+            support::rinceau(["pack"]).arg(&input).arg("-o").arg(&out).arg("--report").arg(&report).done();
+        assert_ne!(done.code, Some(0));
+        assert!(done.stderr.contains("[bad-parameter]"), "{}", done.stderr);
+        assert_eq!(std::fs::read_to_string(&input).unwrap(), drawing);
+        assert!(!out.exists());
+    }
+}

@@ -6,6 +6,7 @@
 //! as from one to the next. The one piece is what discs cover whose middles run through all cores and along all
 //! lines, so the width holds everywhere, also where two parts of a piece had hung by a thinner neck.
 
+use super::place::encloses;
 use crate::geom::boolean::{Contour, is_outer, offset, signed_area, simplified, stroked};
 use crate::geom::polyline::{self, simplified_closed};
 use crate::geom::triangulate::delaunay;
@@ -56,7 +57,8 @@ pub(super) fn join(
         let remedy = "Set the bridge width (--bridge) lower, or the element width (--spacing) higher";
         return Err(Error::new("bridge-too-wide", "No element is as thick as a bridge", remedy));
     }
-    let bridges = bridges(&cores, width);
+    // Finer than the outlines themselves, samples would tell nothing.
+    let bridges = bridges(&cores, (0.5 * width).max(4.0 * tolerance));
     let path = united(&cores, &bridges, radius, tolerance);
     let part = Part { path, transform: Affine::IDENTITY, style: Style::filled(tone) };
     artwork.groups.retain(|group| !is_joined(&group));
@@ -111,30 +113,14 @@ fn connected(contours: Vec<Contour>) -> Vec<Vec<Contour>> {
     parts
 }
 
-/// True if a contour winds around a place.
-fn encloses(contour: &Contour, at: Point) -> bool {
-    let mut inside = false;
-    let Some(&last) = contour.last() else { return false };
-    let mut previous = last;
-    for &p in contour {
-        if (p.y > at.y) != (previous.y > at.y)
-            && at.x < previous.x + (at.y - previous.y) / (p.y - previous.y) * (p.x - previous.x)
-        {
-            inside = !inside;
-        }
-        previous = p;
-    }
-    inside
-}
-
 /// The shortest bridges that join all cores: a shortest tree is among the edges of a
 /// Delaunay triangulation of their samples.
-fn bridges(cores: &[Vec<Contour>], width: f64) -> Vec<[Point; 2]> {
+fn bridges(cores: &[Vec<Contour>], step: f64) -> Vec<[Point; 2]> {
     let (mut samples, mut of) = (Vec::new(), Vec::new());
     for (node, contours) in cores.iter().enumerate() {
         for contour in contours {
             let closed: Vec<Point> = contour.iter().chain(contour.first()).copied().collect();
-            let steps = (polyline::length(&closed) / (0.5 * width)).ceil().clamp(3.0, 1e5) as usize;
+            let steps = (polyline::length(&closed) / step).ceil().clamp(3.0, 1e5) as usize;
             samples.extend(polyline::resample(&closed, steps).into_iter().skip(1));
             of.resize(samples.len(), node);
         }

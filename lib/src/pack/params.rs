@@ -147,7 +147,9 @@ impl Sizes {
         let chosen = params.min_gap.to_user(px_per_unit) > 0.0;
         let filler_gap = or(params.filler_gap, if chosen { gap } else { AROUND_FILLERS * gap });
         let edge = or(params.edge, gap / 2.0);
-        let (rounding, bridge) = (or(params.rounding, 0.0), or(params.bridge, gap));
+        // Nothing is so thick that a larger radius would be seen.
+        let rounding = or(params.rounding, 0.0).min(spacing / 4.0);
+        let bridge = or(params.bridge, gap);
         Sizes { spacing, min_length, max_length, gap, filler_gap, edge, rounding, bridge }
     }
 }

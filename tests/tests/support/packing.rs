@@ -36,6 +36,14 @@ pub fn check(artwork: &Artwork, container: &Region, clear: &[Piece], gap: (f64, 
                 bounds(other)
             );
         }
+        let lies_in = |other: &Piece| {
+            bounds(other).contains(piece[0][0])
+                && Region::new(simplified(other, false)).is_some_and(|other| other.contains(piece[0][0]))
+        };
+        assert!(
+            !all.iter().enumerate().any(|(j, other)| i != j && lies_in(other)),
+            "piece {i} lies in another"
+        );
         for fixed in clear {
             assert!(distance(piece, fixed, gap) >= gap - SLACK - 0.02 * gap);
         }
