@@ -6,7 +6,6 @@
 //! as from one to the next. The one piece is what discs cover whose middles run through all cores and along all
 //! lines, so the width holds everywhere, also where two parts of a piece had hung by a thinner neck.
 
-use super::place::encloses;
 use crate::geom::boolean::{Contour, is_outer, offset, signed_area, simplified, stroked};
 use crate::geom::polyline::{self, simplified_closed};
 use crate::geom::triangulate::delaunay;
@@ -111,6 +110,14 @@ fn connected(contours: Vec<Contour>) -> Vec<Vec<Contour>> {
         }
     }
     parts
+}
+
+/// True if a contour winds around a place.
+fn encloses(contour: &Contour, at: Point) -> bool {
+    let crosses = |&(p, q): &(&Point, &Point)| {
+        (p.y > at.y) != (q.y > at.y) && at.x < p.x + (at.y - p.y) / (q.y - p.y) * (q.x - p.x)
+    };
+    contour.last().into_iter().chain(contour).zip(contour).filter(crosses).count() % 2 == 1
 }
 
 /// The shortest bridges that join all cores: a shortest tree is among the edges of a

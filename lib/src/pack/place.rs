@@ -256,14 +256,6 @@ fn is_inside(outline: &Contour, margin: f64, field: &Field) -> bool {
         })
 }
 
-/// True if a contour winds around a place.
-pub(super) fn encloses(contour: &Contour, at: Point) -> bool {
-    let crosses = |&(p, q): &(Point, Point)| {
-        (p.y > at.y) != (q.y > at.y) && at.x < p.x + (at.y - p.y) / (q.y - p.y) * (q.x - p.x)
-    };
-    sides(contour).filter(crosses).count() % 2 == 1
-}
-
 fn sides(contour: &Contour) -> impl Iterator<Item = (Point, Point)> + '_ {
     let previous = contour.last().into_iter().chain(contour);
     previous.zip(contour).map(|(&p, &q)| (p, q))
