@@ -59,6 +59,7 @@ fn bending(bencher: Bencher) {
     let points: Vec<Point> =
         (0..12).map(|k| Point::new(10.0 * f64::from(k), 30.0 * (f64::from(k) / 4.0).sin())).collect();
     let bend = Bend {
+        warps: Vec::new(),
         spine: Curve::near(&points),
         width: (Profile::constant(1.0), Profile::constant(1.1)),
         curvature: (Profile::constant(0.05), Profile::constant(0.05)),

@@ -14,7 +14,7 @@ use rinceau_format::{Artwork, Error, Part, Scene};
 use std::collections::BTreeMap;
 
 /// Cells of the raster, about.
-const CELLS: f64 = 4e5;
+const CELLS: f64 = 6.4e6;
 
 /// A raster of what is inside, and of what is drawn there.
 pub struct Raster {
@@ -76,19 +76,23 @@ fn raster_of(scene: &Scene, artwork: &Artwork) -> Result<(Point, Raster), Error>
         }
         cover(&shapes.containers[index], bounds.origin(), cell, raster.columns, &mut raster.whole);
     }
+    for fixed in &scene.fixed {
+        raster.add_fixed(bounds.origin(), &filled(&fixed.parts, cell));
+    }
     let drawn = artwork.groups.iter().filter(|group| !group.hidden && group.name != "fixed");
     for item in drawn.flat_map(|group| &group.items) {
-        let areas: Vec<Vec<Contour>> = artwork.shapes(item).iter().map(|part| filled(part, cell)).collect();
-        raster.add_piece(bounds.origin(), &areas);
+        raster.add_piece(bounds.origin(), &filled(&artwork.shapes(item), cell));
     }
     Ok((bounds.origin(), raster))
 }
 
-/// What a part covers, with the small holes in it.
-fn filled(part: &Part, cell: f64) -> Vec<Contour> {
-    let mut contours = area_of(part, 0.2 * cell);
-    // Veins and eyes that are cut out of a leaf belong to it; what a stem winds around does not.
-    const OWN: f64 = 0.5;
+/// What a piece covers, with the small holes in it.
+fn filled(parts: &[Part], cell: f64) -> Vec<Contour> {
+    let all: Vec<Contour> = parts.iter().flat_map(|part| area_of(part, 0.2 * cell)).collect();
+    let mut contours = simplified(&all, false);
+    // Veins and eyes that are cut out of a leaf belong to it; what a stem winds around does not: it is larger
+    // than the stem itself.
+    const OWN: f64 = 1.0;
     let ink = area(&contours);
     contours.retain(|contour| is_outer(contour) || signed_area(contour).abs() > OWN * ink);
     // An island in such a hole lies in what is covered now.
@@ -117,18 +121,19 @@ impl Raster {
         cover(contours, origin, self.cell, self.columns, &mut self.inside);
     }
 
-    /// Adds a piece of ink, part by part.
-    fn add_piece(&mut self, origin: Point, parts: &[Vec<Contour>]) {
+    /// Takes out what is fixed, with the small holes in it.
+    fn add_fixed(&mut self, origin: Point, contours: &[Contour]) {
+        runs(contours, origin, self.cell, (self.columns, self.inside.len()), |run| self.inside[run].fill(false));
+    }
+
+    /// Adds a piece of ink.
+    fn add_piece(&mut self, origin: Point, contours: &[Contour]) {
         self.pieces += 1;
-        for contours in parts {
-            runs(contours, origin, self.cell, (self.columns, self.ink.len()), |run| {
-                let others =
-                    self.owner[run.clone()].iter().filter(|&&owner| owner != 0 && owner != self.pieces);
-                self.doubled += others.count();
-                self.ink[run.clone()].fill(true);
-                self.owner[run].fill(self.pieces);
-            });
-        }
+        runs(contours, origin, self.cell, (self.columns, self.ink.len()), |run| {
+            self.doubled += self.owner[run.clone()].iter().filter(|&&owner| owner != 0).count();
+            self.ink[run.clone()].fill(true);
+            self.owner[run].fill(self.pieces);
+        });
     }
 
     /// Distance to what is drawn or outside, of every cell in a gap.
@@ -295,7 +300,7 @@ mod tests {
         for row in 0..20 {
             for column in 0..20 {
                 let at = |i: i32| f64::from(i) * (a + g) + g / 2.0;
-                raster.add_piece(Point::ORIGIN, &[vec![square(at(column), at(row), a)]]);
+                raster.add_piece(Point::ORIGIN, &[square(at(column), at(row), a)]);
             }
         }
         let (distances, _) = raster.gaps();
@@ -320,8 +325,8 @@ mod tests {
         let mut raster = Raster::new(Rect::new(0.0, 0.0, 200.0, 200.0), 0.5);
         raster.add_inside(Point::ORIGIN, &[square(20.0, 20.0, 160.0)]);
         cover(&[square(20.0, 20.0, 160.0)], Point::ORIGIN, 0.5, raster.columns, &mut raster.whole);
-        raster.add_piece(Point::ORIGIN, &[vec![square(10.0, 50.0, 40.0)]]);
-        raster.add_piece(Point::ORIGIN, &[vec![square(40.0, 50.0, 40.0)]]);
+        raster.add_piece(Point::ORIGIN, &[square(10.0, 50.0, 40.0)]);
+        raster.add_piece(Point::ORIGIN, &[square(40.0, 50.0, 40.0)]);
         let measures = raster.measure();
         assert!((measures["overlap"] - 400.0 / 25_600.0).abs() < 1e-3, "{measures:?}");
         assert!((measures["spill"] - 400.0 / 25_600.0).abs() < 1e-3, "{measures:?}");
@@ -334,7 +339,7 @@ mod tests {
         for k in 0..10 {
             let x = f64::from(k) * 40.0;
             let strip = [(x, 0.0), (x + 20.0, 0.0), (x + 20.0, 400.0), (x, 400.0)].map(Point::from).to_vec();
-            raster.add_piece(Point::ORIGIN, &[vec![strip]]);
+            raster.add_piece(Point::ORIGIN, &[strip]);
         }
         let measures = raster.measure();
         // At both ends of a strip the gap narrows into the corners.

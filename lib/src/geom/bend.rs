@@ -16,6 +16,7 @@
 
 use crate::geom::polyline::left_of;
 use crate::geom::spline::{Curve, Profile};
+use crate::geom::warp::Warp;
 use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveDeriv, PathEl, PathSeg, Point, Vec2};
 
 /// How often one curve of the artwork is halved at most: 64 pieces bend any curve that a
@@ -34,6 +35,8 @@ pub struct Bend {
     /// Over which |v| the scale of one side turns into the other's, so that outlines that
     /// cross the spine stay smooth.
     pub blend: f64,
+    /// Warps of what is bent, in this order.
+    pub warps: Vec<Warp>,
 }
 
 /// A mapped point and its derivatives by u and v.
@@ -86,64 +89,109 @@ impl Bend {
             du: jet.d + (q3 * w_du - k * w * w * w * q3 * k_du) * normal + pulled * normal_du,
             dv: q3 * w_dv * normal,
         }
+        .warped(&self.warps)
     }
 
     /// Bends a path in (u, v). Curves stay Béziers: each is split until a cubic with the
     /// mapped ends and end derivatives lies within `tolerance` of the mapped curve, so joins
     /// that were smooth stay smooth. Appends to `out`.
     pub fn path(&self, path: &BezPath, tolerance: f64, out: &mut BezPath) {
-        let mut start = Point::ZERO;
-        let mut at = Point::ZERO;
-        for el in path.elements() {
-            match *el {
-                PathEl::MoveTo(p) => {
-                    (start, at) = (p, p);
-                    out.move_to(self.map(p).p);
+        map_path(path, |at| self.map(at), &self.warps, tolerance, out);
+    }
+
+    /// True if the map turns nothing over at any of these places in (u, v). It never does without warps.
+    pub fn keeps_sense(&self, mut places: impl Iterator<Item = Point>) -> bool {
+        places.all(|at| {
+            let mapped = self.map(at);
+            mapped.du.cross(mapped.dv) > 0.0
+        })
+    }
+}
+
+/// A path that only warps move.
+pub fn warped(path: &BezPath, warps: &[Warp], tolerance: f64) -> BezPath {
+    let map = |at| Mapped { p: at, du: Vec2::new(1.0, 0.0), dv: Vec2::new(0.0, 1.0) }.warped(warps);
+    let mut out = BezPath::new();
+    map_path(path, map, warps, tolerance, &mut out);
+    out
+}
+
+impl Mapped {
+    fn warped(mut self, warps: &[Warp]) -> Self {
+        for warp in warps {
+            self.p = warp.jet(self.p, [&mut self.du, &mut self.dv]);
+        }
+        self
+    }
+}
+
+/// Maps a path; `map` has these warps in it.
+fn map_path(
+    path: &BezPath,
+    map: impl Fn(Point) -> Mapped,
+    warps: &[Warp],
+    tolerance: f64,
+    out: &mut BezPath,
+) {
+    let mut start = Point::ZERO;
+    let mut at = Point::ZERO;
+    let curve = |cubic: CubicBez, out: &mut BezPath| map_curve(cubic, &map, warps, tolerance, out);
+    for el in path.elements() {
+        match *el {
+            PathEl::MoveTo(p) => {
+                (start, at) = (p, p);
+                out.move_to(map(p).p);
+            }
+            PathEl::LineTo(p) => {
+                curve(PathSeg::Line(kurbo::Line::new(at, p)).to_cubic(), out);
+                at = p;
+            }
+            PathEl::QuadTo(a, p) => {
+                curve(PathSeg::Quad(kurbo::QuadBez::new(at, a, p)).to_cubic(), out);
+                at = p;
+            }
+            PathEl::CurveTo(a, b, p) => {
+                curve(CubicBez::new(at, a, b, p), out);
+                at = p;
+            }
+            PathEl::ClosePath => {
+                if at != start {
+                    curve(PathSeg::Line(kurbo::Line::new(at, start)).to_cubic(), out);
                 }
-                PathEl::LineTo(p) => {
-                    self.curve(PathSeg::Line(kurbo::Line::new(at, p)).to_cubic(), tolerance, out);
-                    at = p;
-                }
-                PathEl::QuadTo(a, p) => {
-                    self.curve(PathSeg::Quad(kurbo::QuadBez::new(at, a, p)).to_cubic(), tolerance, out);
-                    at = p;
-                }
-                PathEl::CurveTo(a, b, p) => {
-                    self.curve(CubicBez::new(at, a, b, p), tolerance, out);
-                    at = p;
-                }
-                PathEl::ClosePath => {
-                    if at != start {
-                        self.curve(PathSeg::Line(kurbo::Line::new(at, start)).to_cubic(), tolerance, out);
-                    }
-                    at = start;
-                    out.close_path();
-                }
+                at = start;
+                out.close_path();
             }
         }
     }
+}
 
-    fn curve(&self, source: CubicBez, tolerance: f64, out: &mut BezPath) {
-        let deriv = source.deriv();
-        let end = |t: f64| {
-            let (at, d) = (source.eval(t), deriv.eval(t));
-            let mapped = self.map(at);
-            (mapped.p, d.x * mapped.du + d.y * mapped.dv)
-        };
-        let mut pieces = vec![(0.0, end(0.0), 1.0, end(1.0), 0)];
-        while let Some((t0, e0, t1, e1, halvings)) = pieces.pop() {
-            let h = (t1 - t0) / 3.0;
-            let cubic = CubicBez::new(e0.0, e0.0 + h * e0.1, e1.0 - h * e1.1, e1.0);
-            let near =
-                |s: f64| self.map(source.eval(t0 + s * (t1 - t0))).p.distance(cubic.eval(s)) <= tolerance;
-            if halvings == MOST_HALVINGS || (near(0.5) && near(0.2) && near(0.8)) {
-                out.curve_to(cubic.p1, cubic.p2, cubic.p3);
-            } else {
-                let middle = f64::midpoint(t0, t1);
-                let m = end(middle);
-                pieces.push((middle, m, t1, e1, halvings + 1));
-                pieces.push((t0, e0, middle, m, halvings + 1));
-            }
+fn map_curve(
+    source: CubicBez,
+    map: &impl Fn(Point) -> Mapped,
+    warps: &[Warp],
+    tolerance: f64,
+    out: &mut BezPath,
+) {
+    let deriv = source.deriv();
+    let end = |t: f64| {
+        let (at, d) = (source.eval(t), deriv.eval(t));
+        let mapped = map(at);
+        (mapped.p, d.x * mapped.du + d.y * mapped.dv)
+    };
+    let mut pieces = vec![(0.0, end(0.0), 1.0, end(1.0), 0)];
+    while let Some((t0, e0, t1, e1, halvings)) = pieces.pop() {
+        let h = (t1 - t0) / 3.0;
+        let cubic = CubicBez::new(e0.0, e0.0 + h * e0.1, e1.0 - h * e1.1, e1.0);
+        let near = |s: f64| map(source.eval(t0 + s * (t1 - t0))).p.distance(cubic.eval(s)) <= tolerance;
+        // Nothing that a warp does lies unseen within a piece.
+        let is_short = || warps.iter().all(|warp| cubic.p0.distance(cubic.p3) < 1.5 * warp.radius());
+        if halvings == MOST_HALVINGS || (is_short() && near(0.5) && near(0.2) && near(0.8)) {
+            out.curve_to(cubic.p1, cubic.p2, cubic.p3);
+        } else {
+            let middle = f64::midpoint(t0, t1);
+            let m = end(middle);
+            pieces.push((middle, m, t1, e1, halvings + 1));
+            pieces.push((t0, e0, middle, m, halvings + 1));
         }
     }
 }
@@ -168,6 +216,7 @@ mod tests {
             width: (Profile::below(&[left, left * 1.3, left * 0.8, left], 3), Profile::constant(right)),
             curvature: (Profile::above(&[k.0, k.0 * 0.5], 2), Profile::constant(k.1)),
             blend: 2.0,
+            warps: Vec::new(),
         }
     }
 
@@ -203,6 +252,7 @@ mod tests {
             width: (Profile::constant(1.0), Profile::constant(1.0)),
             curvature: (Profile::constant(0.0), Profile::constant(0.0)),
             blend: 1.0,
+            warps: Vec::new(),
         };
         let mut out = BezPath::new();
         straight.path(&BezPath::from_svg("M0,0C0.2,10 0.8,10 1,0Z").unwrap(), 1e-3, &mut out);

@@ -13,3 +13,4 @@ pub mod polyline;
 pub mod region;
 pub mod spline;
 pub mod triangulate;
+pub mod warp;

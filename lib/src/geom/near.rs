@@ -237,6 +237,20 @@ impl SegmentGrid {
         best.sqrt()
     }
 
+    /// Distance to the nearest stroke along a segment, `reach` if none is nearer: half stroke widths by owner, and
+    /// the `widest` of them. Negative in a stroke.
+    pub fn distance_to_strokes(&self, at: Point, reach: f64, (strokes, widest): (&[f64], f64)) -> f64 {
+        if widest == 0.0 {
+            return self.distance(at, reach);
+        }
+        let mut best = reach;
+        self.visit(at, at, reach + widest, |p, q, owner| {
+            best = best.min(point_segment(at, p, q) - strokes[owner as usize]);
+            true
+        });
+        best
+    }
+
     /// How far a ray from `at` along the unit vector `along` runs before it meets a segment,
     /// `reach` at most.
     pub fn ray(&self, at: Point, along: kurbo::Vec2, reach: f64) -> f64 {

@@ -86,6 +86,7 @@ impl Spine {
             width: width.into(),
             curvature: self.bounds.into(),
             blend: BLEND * template.half_width,
+            warps: Vec::new(),
         }
     }
 }

@@ -1,19 +1,63 @@
 //! Fillers in the gaps that no element could take (FLOWPAK 6, checklist F-083): in the largest
 //! empty circles, largest first, each with a gap around it.
 
-use super::gaps::{Gaps, Place};
+use super::gaps::{Gaps, Inked, Place};
 use super::motif::{Form, Motif, Pocket};
 use super::place::Placement;
 use super::prepare::{Field, Prepared};
 use super::template::Template;
 use crate::field::DirectionField;
+use crate::geom::bend::warped;
 use crate::geom::boolean::{Contour, signed_area};
 use crate::geom::flatten::flatten;
+use crate::geom::region::Region;
+use crate::geom::warp::Warp;
 use kurbo::{Affine, BezPath, Point, Vec2};
 
-/// Radii in spacings: smaller reads as dust, larger as an element of another family.
-const SMALLEST: f64 = 0.05;
+/// The largest radius, in spacings: larger reads as an element of another family.
 const LARGEST: f64 = 0.21;
+
+/// What room a filler needs.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Room {
+    /// The least radius, in spacings.
+    smallest: f64,
+    /// How fine the gaps are seen, in spacings.
+    step: f64,
+    /// True in nooks: where a gap is wider than others and nothing else fits, a speck may come nearer than
+    /// other fillers do.
+    nooks: bool,
+}
+
+/// Smaller ones read as dust where there is room for others.
+pub(super) const GAPS: Room = Room { smallest: 0.05, step: 1.0 / 13.0, nooks: false };
+pub(super) const NOOKS: Room = Room { smallest: 0.014, step: 1.0 / 32.0, nooks: true };
+
+/// The widest gap that stays as it is, over the mean of all. In channels of one width, three pieces that meet
+/// leave 1.15.
+const WIDEST: f64 = 1.42;
+
+impl Room {
+    /// Where fillers may be, and the gap around them.
+    fn of(self, field: &Field) -> (&Region, f64) {
+        match self.nooks {
+            true => (&field.nooks, field.sizes.nook_gap),
+            false => (&field.region, field.sizes.filler_gap),
+        }
+    }
+
+    /// The least radius, where gaps are channels of twice this `mean` width.
+    fn smallest(self, field: &Field, mean: f64) -> f64 {
+        let sizes = &field.sizes;
+        let least = self.smallest * sizes.spacing;
+        if self.nooks { least.max(WIDEST * mean - sizes.safe(sizes.nook_gap)) } else { least }
+    }
+}
+
+/// All that is placed, with its strokes.
+fn inked(placement: &Placement) -> Inked<'_> {
+    Inked { outlines: placement.outlines(), strokes: placement.strokes(), widest: placement.widest_stroke() }
+}
 
 /// A filler in its place.
 #[derive(Clone, Debug)]
@@ -22,12 +66,23 @@ pub(super) struct Filler {
     pub motif: Motif,
     form: Form,
     pub area: f64,
+    /// Half its stroke width.
+    pub stroke: f64,
+    /// What keeps apart from neighbours.
+    pub outlines: Vec<Contour>,
+    /// How it is moulded.
+    pub warps: Vec<Warp>,
 }
 
 impl Filler {
-    /// Its outlines, if it is not an element.
-    pub fn path(&self) -> BezPath {
+    /// Its outlines before it is moulded.
+    pub fn plain(&self) -> BezPath {
         self.form.paths().flatten().collect()
+    }
+
+    /// Its outlines, if it is not an element.
+    pub fn path(&self, tolerance: f64) -> BezPath {
+        if self.warps.is_empty() { self.plain() } else { warped(&self.plain(), &self.warps, tolerance) }
     }
 
     /// From (u, v) of its template to its place.
@@ -43,17 +98,39 @@ pub(super) fn fill(
     templates: &[Template],
     motifs: &[Vec<Motif>],
     flows: &[Option<DirectionField>],
+    room: Room,
+    fillers: &mut Vec<Filler>,
     mut go_on: impl FnMut(f64) -> bool,
-) -> (Vec<Filler>, bool) {
-    let mut fillers = Vec::new();
+) -> bool {
+    let kinds = |index: usize| Kinds { templates, motifs: &motifs[index], flow: flows[index].as_ref() };
+    let mut covered = placement.silhouettes();
+    covered.extend(fillers.iter().flat_map(|filler| filler.outlines.iter().cloned()));
+    let mut all: Vec<(usize, Gaps)> = Vec::new();
     for (index, field) in prepared.fields.iter().enumerate().filter(|(i, _)| !motifs[*i].is_empty()) {
-        let done = index as f64 / prepared.fields.len() as f64;
-        let kinds = Kinds { templates, motifs: &motifs[index], flow: flows[index].as_ref() };
-        if !fill_field((index, field), &kinds, placement, &mut fillers, || go_on(done)) {
-            return (fillers, false);
+        if !go_on(0.5 * index as f64 / prepared.fields.len() as f64) {
+            return false;
+        }
+        let (region, gap) = room.of(field);
+        let sizes = (LARGEST * field.sizes.spacing, gap + kinds(index).stroke(field), room.step * field.sizes.spacing);
+        all.push((index, Gaps::new(field, region, &covered, sizes)));
+    }
+    let mean = if room.nooks { mean_gap(&all, prepared) - 0.3 * placement.widest_stroke() } else { 0.0 };
+    for (done, (index, gaps)) in all.into_iter().enumerate() {
+        let field = &prepared.fields[index];
+        let done = 0.5 + 0.5 * done as f64 / prepared.fields.len() as f64;
+        let smallest = room.smallest(field, mean);
+        if !fill_field((index, field), &kinds(index), placement, fillers, (room, gaps, smallest), || go_on(done)) {
+            return false;
         }
     }
-    (fillers, true)
+    true
+}
+
+/// Twice the mean distance in gaps to what is beside them: half their width, if they are channels.
+fn mean_gap(all: &[(usize, Gaps)], prepared: &Prepared) -> f64 {
+    let one = |(index, gaps): &(usize, Gaps)| gaps.emptiness(prepared.fields[*index].sizes.nook_edge);
+    let (area, sum) = all.iter().map(one).fold((0.0, 0.0), |all, one| (all.0 + one.0, all.1 + one.1));
+    2.0 * sum / f64::max(area, f64::MIN_POSITIVE)
 }
 
 /// What may go into the gaps of a container.
@@ -63,19 +140,24 @@ struct Kinds<'a> {
     flow: Option<&'a DirectionField>,
 }
 
+impl Kinds<'_> {
+    /// Half of the widest stroke that a filler can have, beyond its outline.
+    fn stroke(&self, field: &Field) -> f64 {
+        let largest = LARGEST * field.sizes.spacing;
+        self.motifs.iter().map(|motif| motif.widest_stroke(largest, self.templates)).fold(0.0, f64::max)
+    }
+}
+
 fn fill_field(
     (index, field): (usize, &Field),
     kinds: &Kinds,
     placement: &mut Placement,
     fillers: &mut Vec<Filler>,
+    (room, mut gaps, smallest): (Room, Gaps, f64),
     mut go_on: impl FnMut() -> bool,
 ) -> bool {
-    let spacing = field.sizes.spacing;
-    let (smallest, largest) = (SMALLEST * spacing, LARGEST * spacing);
-    // Strokes reach beyond the outlines that distances are measured to.
-    let own = kinds.motifs.iter().map(|motif| motif.widest_stroke(largest, kinds.templates));
-    let stroke = own.fold(placement.widest_stroke(), f64::max);
-    let mut gaps = Gaps::new(field, &placement.silhouettes, largest, field.sizes.filler_gap + stroke);
+    let (gap, stroke) = (room.of(field).1, kinds.stroke(field));
+    let largest = LARGEST * field.sizes.spacing;
     let mut heap = gaps.middles(smallest);
     const ASK_EVERY: usize = 256;
     let mut popped = 0;
@@ -85,10 +167,10 @@ fn fill_field(
             return false;
         }
         // The middle may be up to a diagonal of a cell away.
-        if gaps.clearance(placement.outlines(), place.at()) < smallest - gaps.step {
+        if gaps.clearance(inked(placement), place.at()) < smallest - gaps.step {
             continue;
         }
-        let (centre, radius) = gaps.centred(placement.outlines(), place.at());
+        let (centre, radius) = gaps.centred(inked(placement), place.at());
         if radius < smallest {
             continue;
         }
@@ -98,22 +180,19 @@ fn fill_field(
             continue;
         }
         let radius = radius.min(largest);
-        let (filler, outlines) = best(index, field, kinds, placement, &gaps, (centre, radius));
-        for outline in &outlines {
-            placement.add_outline(outline, filler.motif.stroke(filler.transform(), kinds.templates));
-            if filler.motif != Motif::Dot {
-                gaps.add(outline);
-            }
-        }
-        if filler.motif == Motif::Dot {
+        let filler = best((index, field), room, kinds, placement, &gaps, (centre, radius));
+        placement.add_filler(&filler.outlines, filler.stroke);
+        if filler.motif.is_round() {
             gaps.add_disc(centre, radius);
+        } else {
+            filler.outlines.iter().for_each(|outline| gaps.add(outline));
         }
         // What is left of a long gap begins beside the new filler.
-        let beside = radius + field.sizes.filler_gap + stroke + smallest;
+        let beside = radius + gap + stroke + smallest;
         for k in 0..8 {
             let angle = f64::from(k) * std::f64::consts::FRAC_PI_4;
             let at = centre + beside * Vec2::new(libm::cos(angle), libm::sin(angle));
-            let free = gaps.clearance(placement.outlines(), at);
+            let free = gaps.clearance(inked(placement), at);
             if free > smallest - gaps.step {
                 heap.push(Place::new(at, free.max(0.0) + gaps.step));
             }
@@ -123,15 +202,16 @@ fn fill_field(
     true
 }
 
-/// The largest filler for a gap, and its outlines.
+/// The largest filler for a gap.
 fn best(
-    index: usize,
-    field: &Field,
+    (index, field): (usize, &Field),
+    room: Room,
     kinds: &Kinds,
     placement: &Placement,
     gaps: &Gaps,
     (centre, radius): (Point, f64),
-) -> (Filler, Vec<Contour>) {
+) -> Filler {
+    let (region, gap) = room.of(field);
     let pocket = pocket(kinds, placement, gaps, (centre, radius));
     let in_place = |motif: Motif, form: Form| {
         let outlines: Vec<Contour> = form
@@ -140,21 +220,19 @@ fn best(
             .map(|subpath| subpath.points)
             .collect();
         let area = outlines.iter().map(|outline| signed_area(outline).abs()).sum();
-        (Filler { field: index, motif, form, area }, outlines)
+        let stroke = motif.stroke(form.transform, kinds.templates);
+        Filler { field: index, motif, form, area, stroke, outlines, warps: Vec::new() }
     };
     let largest = |motif: Motif| {
         let mut forms = motif.forms(&pocket, kinds.templates);
         // The last always goes.
         let last = forms.pop().map(|form| in_place(motif, form));
         let mut tried = forms.into_iter().map(|form| in_place(motif, form));
-        let goes = |(filler, outlines): &(Filler, Vec<Contour>)| {
-            let stroke = motif.stroke(filler.transform(), kinds.templates);
-            placement.filler_goes(outlines, stroke, field)
-        };
+        let goes = |filler: &Filler| placement.filler_goes(&filler.outlines, filler.stroke, (field, region, gap));
         tried.find(goes).or(last)
     };
     let all = kinds.motifs.iter().filter_map(|&motif| largest(motif));
-    let best = all.reduce(|best, other| if other.0.area > best.0.area { other } else { best });
+    let best = all.reduce(|best, other| if other.area > best.area { other } else { best });
     best.unwrap_or_else(|| in_place(Motif::Dot, Motif::Dot.forms(&pocket, kinds.templates).swap_remove(0)))
 }
 
@@ -167,13 +245,13 @@ fn pocket(kinds: &Kinds, placement: &Placement, gaps: &Gaps, (centre, radius): (
     let x = Vec2::new(1.0, 0.0);
     let flow = kinds.flow.and_then(|flow| flow.direction(centre, x)).unwrap_or(x);
     let mut pocket = Pocket { centre, radius, along: flow, reach: [radius; 2] };
-    if kinds.motifs == [Motif::Dot] {
+    if kinds.motifs.iter().all(|motif| motif.is_round()) {
         return pocket;
     }
     let reach = |along: Vec2| {
         let mut walked = radius;
         while walked < FARTHEST * radius {
-            let free = gaps.clearance(placement.outlines(), centre + walked * along);
+            let free = gaps.clearance(inked(placement), centre + walked * along);
             if free < 0.15 * radius {
                 break;
             }

@@ -4,11 +4,14 @@ use super::prepare::Field;
 use crate::geom::boolean::Contour;
 use crate::geom::distance::{cover, covered, squared_distances};
 use crate::geom::near::{PointGrid, SegmentGrid};
+use crate::geom::polyline;
+use crate::geom::region::Region;
+use crate::shapes::closed;
 use kurbo::{Point, Rect, Vec2};
 use std::collections::BinaryHeap;
 
-/// Places are looked at on a grid this fine, in spacings, and then moved to the middle.
-pub(super) const STEP: f64 = 1.0 / 13.0;
+/// Cells of a container at most: a grid for more would be coarser.
+const MOST_CELLS: f64 = 4e6;
 
 /// A place with its clearance, ordered by that, then by place.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
@@ -30,10 +33,18 @@ impl Place {
     }
 }
 
+/// Outlines with half stroke widths by owner, and the widest of them.
+#[derive(Clone, Copy)]
+pub(super) struct Inked<'a> {
+    pub outlines: &'a SegmentGrid,
+    pub strokes: &'a [f64],
+    pub widest: f64,
+}
+
 /// What is covered in one container: elements by cells, dots by their circles. A distance to
 /// an outline is the same from inside, so this has to be known beside it.
 pub(super) struct Gaps<'a> {
-    field: &'a Field,
+    region: &'a Region,
     /// Side of a cell.
     pub step: f64,
     /// Clearances are known up to this.
@@ -54,17 +65,22 @@ pub(super) struct Gaps<'a> {
 
 impl<'a> Gaps<'a> {
     /// The gaps between elements of these silhouettes, for things with a radius of up to `largest` that
-    /// keep `gap` from them.
-    pub fn new(field: &'a Field, silhouettes: &[Contour], largest: f64, gap: f64) -> Self {
-        let bounds = field.region.bounds();
-        let step = STEP * field.sizes.spacing;
+    /// keep `gap` from them. Places are looked for on a grid of this `step`, and then moved to the middle.
+    pub fn new(
+        field: &Field,
+        region: &'a Region,
+        silhouettes: &[Contour],
+        (largest, gap, step): (f64, f64, f64),
+    ) -> Self {
+        let bounds = region.bounds();
+        let step = step.max((bounds.area() / MOST_CELLS).sqrt());
         let gap = field.sizes.safe(gap);
         let (columns, rows) = ((bounds.width() / step) as usize + 1, (bounds.height() / step) as usize + 1);
         let around = bounds.inflate(field.sizes.spacing, field.sizes.spacing);
         let near: Vec<Contour> =
             silhouettes.iter().filter(|contour| touches(contour, around)).cloned().collect();
         let mut gaps = Gaps {
-            field,
+            region,
             step,
             reach: largest + gap,
             gap,
@@ -89,16 +105,43 @@ impl<'a> Gaps<'a> {
             contours.iter().for_each(|contour| self.mark(contour, &mut marked));
             squared_distances(&marked, columns)
         };
-        let region = &self.field.region;
+        let region = self.region;
         let (to_elements, to_boundary) =
             rayon::join(|| distances(silhouettes), || distances(region.contours()));
         let far = (self.reach / step + 2.0).powi(2);
         let rows = self.elements.len() / columns;
         let in_region = covered(region.contours(), self.origin, step, columns, rows);
         let gap = self.gap;
-        let estimate = |i: usize| (to_elements[i].sqrt() * step - gap).min(to_boundary[i].sqrt() * step);
-        self.estimates = (0..self.elements.len()).map(estimate).collect();
+        // What is covered or outside must not look like more room than the gap beside it.
+        let signed = |squared: f64, free: bool| if free { squared.sqrt() * step } else { -squared.sqrt() * step };
+        let estimate = |i: usize| {
+            let to_elements = signed(to_elements[i], !self.elements[i]) - gap;
+            to_elements.min(signed(to_boundary[i], in_region[i]))
+        };
+        let estimates = (0..self.elements.len()).map(estimate).collect();
+        self.estimates = estimates;
         self.inner = in_region.into_iter().zip(&to_boundary).map(|(inside, &d)| inside && d > far).collect();
+    }
+
+    /// Area of the gaps in the region and `edge` around it, and the integral of the distances to what is beside
+    /// them.
+    pub fn emptiness(&self, edge: f64) -> (f64, f64) {
+        let (rows, cell) = (self.elements.len() / self.columns, self.step * self.step);
+        let in_region = covered(self.region.contours(), self.origin, self.step, self.columns, rows);
+        let outside: Vec<bool> = in_region.iter().map(|inside| !inside).collect();
+        let (to_elements, to_outside) = rayon::join(
+            || squared_distances(&self.elements, self.columns),
+            || squared_distances(&outside, self.columns),
+        );
+        // Half a cell lies between the middle of a covered cell and its edge.
+        let distance = |squared: f64| (squared.sqrt() - 0.5) * self.step;
+        let in_gap = (0..self.elements.len()).filter(|&i| in_region[i] && !self.elements[i]);
+        let (count, sum) = in_gap.fold((0.0, 0.0), |(count, sum), i| {
+            (count + 1.0, sum + distance(to_elements[i]).min(distance(to_outside[i]) + edge))
+        });
+        let length = |contour: &Contour| polyline::length(&closed(contour));
+        let strip = edge * self.region.contours().iter().map(length).sum::<f64>();
+        (cell * count + strip, cell * sum + strip * edge / 2.0)
     }
 
     /// The middles of the gaps where there is room for more than `smallest`, with an estimate of their
@@ -121,34 +164,41 @@ impl<'a> Gaps<'a> {
 
     /// Free radius at a place: to the outlines less the gap, to the boundary in full. Negative
     /// outside and in what is covered.
-    pub fn clearance(&self, outlines: &SegmentGrid, at: Point) -> f64 {
+    pub fn clearance(&self, inked: Inked, at: Point) -> f64 {
         if self.covers(at) {
             return -self.reach;
         }
-        let to_elements = outlines.distance(at, self.reach) - self.gap;
+        let strokes = (inked.strokes, inked.widest);
+        let to_elements = inked.outlines.distance_to_strokes(at, self.reach, strokes) - self.gap;
         if self.cell(at).is_some_and(|cell| self.inner[cell]) {
             return to_elements;
         }
-        if !self.field.region.contains(at) {
+        if !self.region.contains(at) {
             return -self.reach;
         }
-        to_elements.min(self.field.region.distance(at, self.reach))
+        to_elements.min(self.region.distance(at, self.reach))
     }
 
     /// Climbs to the middle of a gap, and tells the clearance there.
-    pub fn centred(&self, outlines: &SegmentGrid, mut at: Point) -> (Point, f64) {
-        const HALVINGS: usize = 4;
+    pub fn centred(&self, inked: Inked, mut at: Point) -> (Point, f64) {
+        const ROUNDS: usize = 8;
+        // Four ways would not see a ridge that runs between them.
+        const WAYS: [(f64, f64); 8] =
+            [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (0.7, 0.7), (-0.7, -0.7), (0.7, -0.7), (-0.7, 0.7)];
         let mut step = self.step;
-        let mut best = self.clearance(outlines, at);
-        for _ in 0..HALVINGS {
-            for (x, y) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
+        let mut best = self.clearance(inked, at);
+        for _ in 0..ROUNDS {
+            let before = best;
+            for (x, y) in WAYS {
                 let next = at + step * Vec2::new(x, y);
-                let free = self.clearance(outlines, next);
+                let free = self.clearance(inked, next);
                 if free > best {
                     (at, best) = (next, free);
                 }
             }
-            step /= 2.0;
+            if best == before {
+                step /= 2.0;
+            }
         }
         (at, best)
     }

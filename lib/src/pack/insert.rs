@@ -8,7 +8,7 @@
 
 use super::blob::{Blob, Spine};
 use super::cast::{Neighbours, chosen};
-use super::gaps::{Gaps, Place};
+use super::gaps::{Gaps, Inked, Place};
 use super::params::Sizes;
 use super::prepare::{Field, Prepared};
 use super::refine::Body;
@@ -27,6 +27,9 @@ const SHORTEST: f64 = 0.75;
 const SLENDER: f64 = 2.6;
 /// The farthest that a line runs from the middle of its gap, in half widths of the gap.
 const FARTHEST: f64 = 6.0;
+
+/// How fine the gaps are seen, in spacings.
+const STEP: f64 = 1.0 / 13.0;
 
 /// What small elements are chosen from, and where they go.
 pub(super) struct Ground<'a> {
@@ -59,7 +62,9 @@ pub(super) fn insert(
         if field.params.iterations == 0 {
             continue;
         }
-        let mut gaps = Gaps::new(field, silhouettes, field.sizes.spacing, field.sizes.gap + stroke);
+        let spacing = field.sizes.spacing;
+        let sizes = (spacing, field.sizes.gap + stroke, STEP * spacing);
+        let mut gaps = Gaps::new(field, &field.region, silhouettes, sizes);
         let mut heap = gaps.middles(NARROWEST * field.sizes.spacing);
         const ASK_EVERY: usize = 64;
         let mut popped = 0;
@@ -85,6 +90,11 @@ pub(super) fn insert(
     (inserted, true)
 }
 
+/// Outlines without strokes: those count with the gap.
+fn plain(outlines: &SegmentGrid) -> Inked<'_> {
+    Inked { outlines, strokes: &[], widest: 0.0 }
+}
+
 /// The middle of a gap and its clearance, if it is wide enough and the widest left; goes back to the heap
 /// if it is not.
 fn settled(
@@ -94,7 +104,7 @@ fn settled(
     heap: &mut std::collections::BinaryHeap<Place>,
     sizes: &Sizes,
 ) -> Option<(Point, f64)> {
-    let (centre, radius) = gaps.centred(outlines, place.at());
+    let (centre, radius) = gaps.centred(plain(outlines), place.at());
     if radius < NARROWEST * sizes.spacing {
         return None;
     }
@@ -115,7 +125,7 @@ fn blob(
 ) -> Option<Blob> {
     let spacing = field.sizes.spacing;
     let step = spacing / 24.0;
-    let clearance = |at: Point| gaps.clearance(outlines, at);
+    let clearance = |at: Point| gaps.clearance(plain(outlines), at);
     // A tip needs no width, but the line should not slip through a crack into the next gap.
     let least = 0.25 * radius;
     let first = flow.direction(centre, Vec2::new(1.0, 0.0))?;

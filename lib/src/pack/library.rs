@@ -47,6 +47,7 @@ pub(super) fn motifs(templates: &[Template], field: &Field, scene: &Scene) -> Re
     let mut motifs = Vec::new();
     for word in field.params.fillers.split_whitespace() {
         match word {
+            "pebbles" => motifs.push(Motif::Pebble),
             "dots" => motifs.push(Motif::Dot),
             "diamonds" => motifs.push(Motif::Diamond),
             "drops" => motifs.push(Motif::Drop),
@@ -58,7 +59,7 @@ pub(super) fn motifs(templates: &[Template], field: &Field, scene: &Scene) -> Re
                 if motifs.len() == before {
                     let sentence = format!("Nothing that fills gaps is called '{name}'");
                     let remedy =
-                        "Use dots, diamonds, drops, shapes, none, or the id, kind or family of an element";
+                        "Use pebbles, dots, diamonds, drops, shapes, none, or the id, kind or family of an element";
                     let error = Error::new("no-filler", sentence, remedy);
                     return Err(at_container(error, "fillers", field, scene));
                 }

@@ -33,6 +33,7 @@ mod library;
 mod lines;
 mod map;
 mod motif;
+mod mould;
 mod negative;
 mod paint;
 mod params;
@@ -89,9 +90,17 @@ pub fn generate(
     // Out of time, dots would fill what elements should have.
     let (mut fillers, mut negative) = (Vec::new(), Vec::new());
     if complete {
+        let step = |done| progress.step("mould", done);
+        complete = mould::mould(&prepared, &templates, &mut placement, &mut [], &mould::WIDE, step);
+    }
+    if complete {
         progress.step("fill", 0.0);
         let step = |done| progress.step("fill", done);
-        (fillers, complete) = fill::fill(&prepared, &mut placement, &templates, &motifs, &flows, step);
+        complete = fill::fill(&prepared, &mut placement, &templates, &motifs, &flows, fill::GAPS, &mut fillers, step);
+        let step = |done| progress.step("mould", done);
+        complete = complete && mould::mould(&prepared, &templates, &mut placement, &mut fillers, &mould::CLOSE, step);
+        let step = |done| progress.step("fill", done);
+        complete = complete && fill::fill(&prepared, &mut placement, &templates, &motifs, &flows, fill::NOOKS, &mut fillers, step);
         let (all, finished) = negative::shapes(&prepared, &placement, |done| progress.step("fill", done));
         (negative, complete) = (all, complete && finished);
     }
@@ -153,7 +162,7 @@ fn compose(ground: &Ground, blobs: &[Blob], rng: &mut Rng, progress: &mut dyn Pr
     if complete {
         // Where one found no place after all, a smaller one may.
         let (small, finished) =
-            insert(&bodies, (&placement.silhouettes, placement.widest_stroke()), &mut rng.fork(), progress);
+            insert(&bodies, (&placement.silhouettes(), placement.widest_stroke()), &mut rng.fork(), progress);
         complete = finished && placement.place(&small, templates, prepared, |_| true);
     }
     (placement, complete)

@@ -7,6 +7,8 @@ use kurbo::{Affine, BezPath, Circle, Point, Shape, Vec2};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Motif {
     Dot,
+    /// A dot that is moulded into its gap.
+    Pebble,
     Diamond,
     Drop,
     /// The template with this number, as it was drawn, no more than scaled and turned.
@@ -26,10 +28,21 @@ pub(super) struct Pocket {
 }
 
 impl Motif {
+    /// True for discs.
+    pub fn is_round(self) -> bool {
+        matches!(self, Motif::Dot | Motif::Pebble)
+    }
+
+    /// True for what is moulded into its gap.
+    pub fn gives_way(self) -> bool {
+        self == Motif::Pebble
+    }
+
     /// What its items are called.
     pub fn name(self, templates: &[Template]) -> &str {
         match self {
             Motif::Dot => "dot",
+            Motif::Pebble => "pebble",
             Motif::Diamond => "diamond",
             Motif::Drop => "drop",
             Motif::Element(template) => &templates[template].id,
@@ -63,7 +76,7 @@ impl Motif {
             Affine::new([x.x, x.y, -x.y, x.x, pocket.centre.x, pocket.centre.y])
         };
         match self {
-            Motif::Dot => vec![Form::plain(circle(pocket.centre, r), Affine::IDENTITY)],
+            Motif::Dot | Motif::Pebble => vec![Form::plain(circle(pocket.centre, r), Affine::IDENTITY)],
             Motif::Diamond => {
                 let long = (pocket.reach[0].min(pocket.reach[1]) / r).clamp(1.0, 2.8);
                 slim(long).map(|(long, wide)| Form::plain(diamond(long, wide), frame(r))).collect()

@@ -18,6 +18,7 @@ pub(super) const FAMILIES: &[(&str, &str)] = &[
 
 /// What fills gaps.
 const FILLERS: &[(&str, &str)] = &[
+    ("pebbles", "Pebbles"),
     ("dots", "Dots"),
     ("diamonds", "Diamonds"),
     ("drops", "Drops"),
@@ -44,11 +45,13 @@ crate::params! {
         #[doc = "Empty distance kept from the outline of the shape. 0 chooses half the gap"]
         edge: Length = "edge", "Distance from outline", More, Kind::Length, "0";
         #[doc = "What goes into the gaps that are left: small dots, diamonds or drops, names of your own small elements, shapes that follow the elements around them, or nothing"]
-        fillers: String = "fillers", "Fill gaps with", Basic, Kind::Names(FILLERS), "dots";
+        fillers: String = "fillers", "Fill gaps with", Basic, Kind::Names(FILLERS), "pebbles";
         #[doc = "Empty distance kept around what fills the gaps. 0 chooses seven tenths of the gap, or all of a gap that you chose yourself"]
         filler_gap: Length = "filler-gap", "Gap around fillers", More, Kind::Length, "0";
         #[doc = "How freely an element's width may swell and shrink along its length to fill the space it has: 1 keeps its proportions, 3 is very free"]
         stretch: f64 = "stretch", "Swelling", More, Kind::Number { min: 1.0, max: 3.0 }, "1.6";
+        #[doc = "How far outlines give way to what is beside them, so that all gaps become alike: 0 leaves elements as they were bent, 1 presses them into every corner"]
+        mould: f64 = "mould", "Moulding", More, Kind::Number { min: 0.0, max: 1.0 }, "1";
         #[doc = "How hard equal neighbours are avoided: 0 takes whatever fits best, 1 mixes as much as it can"]
         variety: f64 = "variety", "Variety", More, Kind::Number { min: 0.0, max: 1.0 }, "0.5";
         #[doc = "Which way elements point: with the arrows of the guides, or either way, whatever fits best"]
@@ -98,7 +101,10 @@ pub(super) struct Sizes {
     pub gap: f64,
     /// Around what fills the gaps.
     pub filler_gap: f64,
+    /// Around specks in nooks.
+    pub nook_gap: f64,
     pub edge: f64,
+    pub nook_edge: f64,
     pub rounding: f64,
     pub bridge: f64,
 }
@@ -141,15 +147,19 @@ impl Sizes {
         let max_length = or(params.max_length, 4.0 * spacing);
         let min_length = or(params.min_length, 1.5 * spacing).min(max_length);
         let gap = or(params.min_gap, spacing / 8.0);
-        // Round things look farther from their neighbours than they are. Who says how wide a gap has to
-        // be, to cut it out for instance, means all of them.
-        const AROUND_FILLERS: f64 = 0.7;
-        let chosen = params.min_gap.to_user(px_per_unit) > 0.0;
-        let filler_gap = or(params.filler_gap, if chosen { gap } else { AROUND_FILLERS * gap });
-        let edge = or(params.edge, gap / 2.0);
+        // Round and small things look farther from their neighbours than they are, and so does the outline.
+        const NARROWER: f64 = 0.85;
+        const NOOK: f64 = 0.42;
+        // Who says how wide a gap has to be, to cut it out for instance, means all of them.
+        let chosen = |length: Length| length.to_user(px_per_unit) > 0.0;
+        let is_cut = chosen(params.min_gap);
+        let filler_gap = or(params.filler_gap, if is_cut { gap } else { NARROWER * gap });
+        let edge = or(params.edge, if is_cut { gap } else { NARROWER * gap });
+        let nook_gap = if is_cut || chosen(params.filler_gap) { filler_gap } else { NOOK * gap };
+        let nook_edge = if chosen(params.edge) { edge } else { edge.min(nook_gap) };
         // Nothing is so thick that a larger radius would be seen.
         let rounding = or(params.rounding, 0.0).min(spacing / 4.0);
         let bridge = or(params.bridge, gap);
-        Sizes { spacing, min_length, max_length, gap, filler_gap, edge, rounding, bridge }
+        Sizes { spacing, min_length, max_length, gap, filler_gap, nook_gap, edge, nook_edge, rounding, bridge }
     }
 }

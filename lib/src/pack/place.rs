@@ -18,6 +18,7 @@ use crate::geom::crossing::{any_crossing, self_crossings};
 use crate::geom::flatten::flatten;
 use crate::geom::near::{SegmentGrid, crosses, segment_segment};
 use crate::geom::polyline;
+use crate::geom::region::Region;
 use kurbo::{Affine, BezPath, Point};
 use rayon::prelude::*;
 
@@ -42,13 +43,19 @@ pub(super) struct Placed {
     pub field: usize,
     pub kind: LineKind,
     pub template: usize,
-    pose: Pose,
-    bend: Bend,
+    pub pose: Pose,
+    pub bend: Bend,
     /// Mean scale, for stroke widths.
     pub scale: f64,
     pub centre: Point,
     pub area: f64,
     pub spine: Vec<Point>,
+    /// Half stroke width.
+    pub stroke: f64,
+    /// What keeps apart from neighbours.
+    pub outlines: Vec<Contour>,
+    /// Outer contours alone, without holes.
+    pub silhouette: Vec<Contour>,
 }
 
 impl Placed {
@@ -78,8 +85,6 @@ pub(super) struct Placement {
     /// The widest of them.
     widest: f64,
     pub placed: Vec<Placed>,
-    /// Outer contours of everything placed, without holes.
-    pub silhouettes: Vec<Contour>,
 }
 
 impl Placement {
@@ -91,7 +96,6 @@ impl Placement {
             strokes: Vec::new(),
             widest: 0.0,
             placed: Vec::new(),
-            silhouettes: Vec::new(),
         }
     }
 
@@ -164,16 +168,33 @@ impl Placement {
             area: area(&silhouette),
             spine: (0..=24).map(|i| bend.spine.jet(f64::from(i) / 24.0).p).collect(),
             bend,
+            stroke,
+            outlines,
+            silhouette,
         });
-        self.silhouettes.extend(silhouette);
     }
 
-    /// Adds the outline of something that is not an element, and half its stroke width.
-    pub fn add_outline(&mut self, outline: &Contour, stroke: f64) {
+    /// Adds the outlines of something that is not an element, and half its stroke width.
+    pub fn add_filler(&mut self, outlines: &[Contour], stroke: f64) {
         let owner = self.strokes.len() as u32;
         self.strokes.push(stroke);
         self.widest = self.widest.max(stroke);
-        self.outlines.insert_contour(outline, owner);
+        outlines.iter().for_each(|outline| self.outlines.insert_contour(outline, owner));
+    }
+
+    /// Outer contours of all elements, without holes.
+    pub fn silhouettes(&self) -> Vec<Contour> {
+        self.placed.iter().flat_map(|placed| placed.silhouette.iter().cloned()).collect()
+    }
+
+    /// Half stroke widths, of elements and then of fillers.
+    pub fn strokes(&self) -> &[f64] {
+        &self.strokes
+    }
+
+    /// Takes moved outlines for those of before.
+    pub fn replace_outlines(&mut self, outlines: SegmentGrid) {
+        self.outlines = outlines;
     }
 
     /// Half the width of the widest stroke.
@@ -187,10 +208,15 @@ impl Placement {
     }
 
     /// True if the outlines of a filler are inside the region and keep its gap to what is placed.
-    pub fn filler_goes(&self, outlines: &[Contour], stroke: f64, field: &Field) -> bool {
+    pub fn filler_goes(
+        &self,
+        outlines: &[Contour],
+        stroke: f64,
+        (field, region, gap): (&Field, &Region, f64),
+    ) -> bool {
         let margin = stroke + (field.sizes.tolerance() - field.sizes.edge).max(0.0);
-        let gap = field.sizes.safe(field.sizes.filler_gap) + stroke;
-        outlines.iter().all(|outline| is_inside(outline, margin, field) && self.is_clear(outline, gap))
+        let gap = field.sizes.safe(gap) + stroke;
+        outlines.iter().all(|outline| is_inside(outline, margin, region) && self.is_clear(outline, gap))
     }
 
     /// True if every outline is inside the region and keeps the gap to what is placed.
@@ -198,7 +224,7 @@ impl Placement {
         // Where the outline wants next to no distance, chords must not hide an excess.
         let margin = stroke + (field.sizes.tolerance() - field.sizes.edge).max(0.0);
         let gap = field.sizes.safe_gap() + stroke;
-        outlines.iter().all(|outline| is_inside(outline, margin, field) && self.is_clear(outline, gap))
+        outlines.iter().all(|outline| is_inside(outline, margin, &field.region) && self.is_clear(outline, gap))
     }
 
     fn is_clear(&self, outline: &Contour, gap: f64) -> bool {
@@ -236,8 +262,7 @@ fn candidate(body: &Body, (width, cut): (f64, f64), template: &Template, field: 
 }
 
 /// True if an outline lies in the region, `margin` from its edge.
-fn is_inside(outline: &Contour, margin: f64, field: &Field) -> bool {
-    let region = &field.region;
+pub(super) fn is_inside(outline: &Contour, margin: f64, region: &Region) -> bool {
     let centre = centre(std::slice::from_ref(outline));
     let radius = outline.iter().map(|p| p.distance(centre)).fold(0.0, f64::max) + margin;
     if region.contains(centre) && region.distance(centre, radius) >= radius {
@@ -256,13 +281,13 @@ fn is_inside(outline: &Contour, margin: f64, field: &Field) -> bool {
         })
 }
 
-fn sides(contour: &Contour) -> impl Iterator<Item = (Point, Point)> + '_ {
+pub(super) fn sides(contour: &Contour) -> impl Iterator<Item = (Point, Point)> + '_ {
     let previous = contour.last().into_iter().chain(contour);
     previous.zip(contour).map(|(&p, &q)| (p, q))
 }
 
 /// Outer contours alone, joined: a hole is covered too, and an island in it.
-fn silhouette(outlines: &[Contour]) -> Vec<Contour> {
+pub(super) fn silhouette(outlines: &[Contour]) -> Vec<Contour> {
     if let [outline] = outlines {
         // It does not cross itself, or it would not have been placed.
         return vec![outline.clone()];
@@ -272,7 +297,7 @@ fn silhouette(outlines: &[Contour]) -> Vec<Contour> {
 }
 
 /// Curves are bent finer than the chords of the checks.
-const FINER: f64 = 0.25;
+pub(super) const FINER: f64 = 0.25;
 
 /// The whole template bent into place. The map keeps the sides of the thinnest needle apart,
 /// but curves that are near the truth may cross where the truth does not by less than that; a
@@ -291,7 +316,7 @@ fn unfolded(template: &Template, pose: Pose, bend: &Bend, sizes: &Sizes) -> Vec<
 }
 
 /// Paths of a template bent into place.
-fn bent<'a>(
+pub(super) fn bent<'a>(
     paths: impl IntoIterator<Item = &'a BezPath>,
     pose: Pose,
     bend: &Bend,

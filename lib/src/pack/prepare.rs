@@ -18,6 +18,8 @@ pub(super) struct Field {
     pub sizes: Sizes,
     /// Where elements may be: the container without fixed areas, less the edge distance.
     pub region: Region,
+    /// Where specks may be, nearer to its edge.
+    pub nooks: Region,
     /// Guides that pass inside, as polylines; the boundary where there is none.
     pub guides: Vec<Vec<Point>>,
     /// True if the artist drew them, so that their sense means something.
@@ -67,7 +69,12 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
                 let axis = axis(&own, &region, (&guides, container))?;
                 match half(region, axis, &sizes) {
                     Some(region) => {
-                        prepared.fields.push(field(index, own, sizes, region, (&guides, &spines), axis))
+                        // Nearer to the edge there is always more.
+                        let nooks = shapes.free(index, sizes.nook_gap, sizes.nook_edge);
+                        let nooks = nooks.and_then(|nooks| half(nooks, axis, &sizes));
+                        let nooks = nooks.unwrap_or_else(|| region.clone());
+                        let regions = (region, nooks);
+                        prepared.fields.push(field(index, own, sizes, regions, (&guides, &spines), axis));
                     }
                     None => prepared.warnings.push(format!(
                         "The container '{}' has nothing alike on both sides of its axis",
@@ -89,7 +96,7 @@ fn field(
     container: usize,
     params: Params,
     sizes: Sizes,
-    region: Region,
+    (region, nooks): (Region, Region),
     (guides, spines): (&Lines, &Lines),
     axis: Option<Axis>,
 ) -> Field {
@@ -115,7 +122,7 @@ fn field(
     let fixed_spines = through(spines, 0.0);
     let guided = !own_guides.is_empty();
     let guides = if guided { own_guides } else { region.contours().iter().map(closed).collect() };
-    Field { container, params, sizes, region, guides, guided, fixed_spines, mirror }
+    Field { container, params, sizes, region, nooks, guides, guided, fixed_spines, mirror }
 }
 
 /// What a container is mirrored about, if it is.

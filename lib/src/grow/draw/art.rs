@@ -139,6 +139,7 @@ impl Art {
             width: (scale.clone(), scale),
             curvature: (side(1.0), side(-1.0)),
             blend: 1e-3,
+            warps: Vec::new(),
         };
         let tolerance = (2e-3 * total).clamp(0.01, 0.03);
         let bent = |(path, _): &(BezPath, Style)| {

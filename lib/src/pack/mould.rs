@@ -1,0 +1,462 @@
+//! Outlines give way, so that gaps become channels of one width (ours; evener gaps than bending gives are
+//! what FLOWPAK leaves open in its section 6).
+//!
+//! Bending moves an element as a whole: where three of them meet, or where two part, gaps stay wider
+//! than elsewhere, and too narrow for a filler with gaps of its own. Here the outline of every piece grows
+//! into the space beside it, sample by sample, by no more than its share of what is there beyond the gap,
+//! and as smoothly as its stage allows: a wide stage before gaps are filled, so that few fillers are
+//! needed, then closer ones, which reach the corners. What is drawn in an element moves with its outline
+//! (`geom::warp`).
+//!
+//! All pieces move at once, each within its share, so that neither their order nor the number of threads
+//! matters. What comes of it is checked exactly, outline by outline, as in `place`; a piece that fails moves
+//! half as far, or stays as it was.
+
+use super::fill::Filler;
+use super::params::Sizes;
+use super::place::{FINER, Placement, bent, is_inside, sides, silhouette};
+use super::prepare::{Field, Prepared};
+use super::template::Template;
+use crate::geom::bend::{Bend, warped};
+use crate::geom::boolean::{Contour, area, signed_area};
+use crate::geom::crossing::self_crossings;
+use crate::geom::flatten::flatten;
+use crate::geom::near::{PointTable, SegmentGrid, segment_segment};
+use crate::geom::warp::{Ties, Warp};
+use kurbo::{ParamCurve, Point, Rect, Vec2};
+use rayon::prelude::*;
+
+/// One go at moulding. Lengths in spacings.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stage {
+    /// How far a push is felt: what is moulded is no sharper.
+    radius: f64,
+    /// The farthest push.
+    most: f64,
+    iterations: usize,
+}
+
+/// Before gaps are filled.
+pub(super) const WIDE: [Stage; 2] = [stage(0.2, 0.14, 9), stage(0.1, 0.07, 7)];
+/// After that, into the corners.
+pub(super) const CLOSE: [Stage; 3] = [stage(0.1, 0.07, 7), stage(0.05, 0.04, 7), stage(0.03, 0.02, 6)];
+
+const fn stage(radius: f64, most: f64, iterations: usize) -> Stage {
+    Stage { radius, most, iterations }
+}
+
+/// The farthest push in one iteration, in spacings, and as a share of the farthest of all.
+const STEP: (f64, f64) = (0.03, 0.5);
+/// A sample that may move no farther than this, in spacings, will not: what is beside it only grows.
+const CLOSED: f64 = 1e-3;
+
+/// Moulds elements and pebbles. False if the time ran out first.
+pub(super) fn mould(
+    prepared: &Prepared,
+    templates: &[Template],
+    placement: &mut Placement,
+    fillers: &mut [Filler],
+    stages: &[Stage],
+    mut go_on: impl FnMut(f64) -> bool,
+) -> bool {
+    let is_moulded = |field: &Field| field.params.mould > 0.0 && field.params.iterations > 0;
+    if !prepared.fields.iter().any(is_moulded) {
+        return true;
+    }
+    stages.iter().enumerate().all(|(k, &stage)| {
+        let go_on = |done: f64| go_on((k as f64 + done) / stages.len() as f64);
+        one_stage(prepared, templates, placement, fillers, stage, go_on)
+    })
+}
+
+fn one_stage(
+    prepared: &Prepared,
+    templates: &[Template],
+    placement: &mut Placement,
+    fillers: &mut [Filler],
+    stage: Stage,
+    mut go_on: impl FnMut(f64) -> bool,
+) -> bool {
+    let pieces = Pieces { prepared, strokes: placement.strokes(), elements: placement.placed.len() };
+    let skin = |field: usize, gives_way: bool, outlines: &[Contour]| {
+        Skin::new(field, &prepared.fields[field], gives_way, outlines, stage)
+    };
+    let of_elements =
+        placement.placed.par_iter().map(|placed| skin(placed.field, true, &placed.outlines));
+    let of_fillers =
+        fillers.par_iter().map(|filler| skin(filler.field, filler.motif.gives_way(), &filler.outlines));
+    let mut skins: Vec<Skin> = of_elements.chain(of_fillers).collect();
+    let mut complete = true;
+    for iteration in 0..stage.iterations {
+        complete = go_on(iteration as f64 / stage.iterations as f64);
+        if !complete {
+            break;
+        }
+        pieces.grow(&mut skins, stage);
+    }
+    settle(prepared, templates, placement, fillers, &skins);
+    complete
+}
+
+/// The samples of a piece's outlines.
+struct Skin {
+    field: usize,
+    /// Before, and as they are pushed.
+    before: Vec<Point>,
+    now: Vec<Point>,
+    /// The samples before and after each in its contour.
+    beside: Vec<[u32; 2]>,
+    /// 1 or -1, by which way the contour runs.
+    sense: Vec<f64>,
+    pushes: Vec<Vec2>,
+    /// Samples that have no room left.
+    closed: Vec<bool>,
+    /// Empty for what does not give way.
+    ties: Option<Ties>,
+    radius: f64,
+    step: f64,
+}
+
+impl Skin {
+    fn new(index: usize, field: &Field, gives_way: bool, outlines: &[Contour], stage: Stage) -> Self {
+        /// Samples in a radius.
+        const SAMPLES: f64 = 4.0;
+        let radius = stage.radius * field.sizes.spacing;
+        let step = radius / SAMPLES;
+        let (mut before, mut beside, mut sense) = (Vec::new(), Vec::new(), Vec::new());
+        for contour in outlines {
+            let points = sampled(contour, step);
+            let (start, n) = (before.len() as u32, points.len() as u32);
+            beside.extend((0..n).map(|i| [start + (i + n - 1) % n, start + (i + 1) % n]));
+            sense.extend(std::iter::repeat_n(signed_area(contour).signum(), points.len()));
+            before.extend(points);
+        }
+        let moves = gives_way && field.params.mould > 0.0 && field.params.iterations > 0;
+        let ties = (moves && !before.is_empty()).then(|| Ties::new(&before, radius, step));
+        let pushes = vec![Vec2::ZERO; before.len()];
+        let now = before.clone();
+        let closed = vec![false; before.len()];
+        Skin { field: index, before, now, beside, sense, pushes, closed, ties, radius, step }
+    }
+
+    fn is_pushed(&self) -> bool {
+        self.pushes.iter().any(|push| push.hypot2() > 0.0)
+    }
+
+    /// Outward normal at a sample.
+    fn normal(&self, i: usize) -> Vec2 {
+        let [a, b] = self.beside[i];
+        let along = self.now[b as usize] - self.now[a as usize];
+        let normal = Vec2::new(along.y, -along.x) * self.sense[i];
+        normal / normal.hypot().max(f64::MIN_POSITIVE)
+    }
+
+    /// Pushes and samples after one more iteration, where each sample may move by so much.
+    fn grown(&self, ties: &Ties, allowed: &Allowances, most: f64) -> (Vec<Vec2>, Vec<Point>) {
+        let push = |i: usize| {
+            // No more than any sample near by may move, since those move along.
+            let by = ties.least(&allowed.to_others, i).min(allowed.to_itself[i]).max(0.0);
+            let push = self.pushes[i] + by * self.normal(i);
+            push * (most / push.hypot().max(most))
+        };
+        let pushes: Vec<Vec2> = (0..self.now.len()).map(push).collect();
+        let now = (0..self.now.len()).map(|i| self.before[i] + ties.push(&pushes, i)).collect();
+        (pushes, now)
+    }
+}
+
+/// How far each sample of a piece may move.
+struct Allowances {
+    to_others: Vec<f64>,
+    /// Across a notch of its own. Its walls may move along with what is beside them.
+    to_itself: Vec<f64>,
+}
+
+/// What pieces keep between them. Fillers are numbered after elements.
+struct Pieces<'a> {
+    prepared: &'a Prepared,
+    strokes: &'a [f64],
+    elements: usize,
+}
+
+impl Pieces<'_> {
+    /// The gap between the outlines of two pieces.
+    fn gap(&self, sizes: &Sizes, one: usize, other: usize) -> f64 {
+        let both_elements = one < self.elements && other < self.elements;
+        let gap = if both_elements { sizes.gap } else { sizes.filler_gap };
+        sizes.safe(gap) + self.strokes[one] + self.strokes[other]
+    }
+
+    /// The most that [`Pieces::gap`] can be for a piece.
+    fn widest_gap(&self, sizes: &Sizes, one: usize) -> f64 {
+        let widest = self.strokes.iter().copied().fold(0.0, f64::max);
+        sizes.safe(sizes.gap.max(sizes.filler_gap)) + self.strokes[one] + widest
+    }
+
+    /// One iteration.
+    fn grow(&self, skins: &mut [Skin], stage: Stage) {
+        let fields = &self.prepared.fields;
+        let all = skins.iter().zip(0..).flat_map(|(skin, i)| skin.now.iter().map(move |&p| (p, i)));
+        let all: Vec<(Point, u32)> = all.collect();
+        let cell = fields.iter().map(|field| field.sizes.safe_gap()).fold(0.0, f64::max);
+        let table = PointTable::new(self.prepared.bounds, cell, &all);
+        // Each looks only at the last state, so any number of threads gives the same.
+        let grow = |(own, skin): (usize, &Skin)| {
+            let ties = skin.ties.as_ref()?;
+            let field = &fields[skin.field];
+            let spacing = field.sizes.spacing;
+            let limit = STEP.0.min(STEP.1 * stage.most) * spacing;
+            let allowed = self.allowances(own, skin, skins, &table, limit);
+            let (pushes, now) = skin.grown(ties, &allowed, field.params.mould * stage.most * spacing);
+            let closed = allowed.to_others.iter().map(|&by| by <= CLOSED * spacing).collect();
+            Some((pushes, now, closed))
+        };
+        let grown: Vec<_> = skins.par_iter().enumerate().map(grow).collect();
+        for (skin, grown) in skins.iter_mut().zip(grown) {
+            if let Some((pushes, now, closed)) = grown {
+                (skin.pushes, skin.now, skin.closed) = (pushes, now, closed);
+            }
+        }
+    }
+
+    /// How far each sample of a piece may move, `limit` at most.
+    fn allowances(
+        &self,
+        own: usize,
+        skin: &Skin,
+        skins: &[Skin],
+        table: &PointTable,
+        limit: f64,
+    ) -> Allowances {
+        /// Cosine of the widest angle between a normal and what it faces.
+        const FACING: f64 = 0.5;
+        let field = &self.prepared.fields[skin.field];
+        let sizes = &field.sizes;
+        // Nearest samples are up to half a step beside the nearest points.
+        let beside = (skin.step / 2.0).powi(2);
+        let reach = self.widest_gap(sizes, own) + 2.0 * limit + skin.step;
+        let margin = self.strokes[own] + sizes.tolerance();
+        let near_edge = is_near_edge(&skin.now, limit + margin, field);
+        let mut allowed = Allowances { to_others: Vec::new(), to_itself: Vec::new() };
+        for (i, &p) in skin.now.iter().enumerate() {
+            if skin.closed[i] {
+                allowed.to_others.push(0.0);
+                allowed.to_itself.push(0.0);
+                continue;
+            }
+            let (mut to_others, mut to_itself) = (limit, limit);
+            let normal = skin.normal(i);
+            for (q, other) in table.near(p, reach) {
+                let squared = q.distance_squared(p);
+                if squared >= reach * reach {
+                    continue;
+                }
+                let apart = || (squared - beside).max(0.0).sqrt() - sizes.tolerance();
+                if other as usize != own {
+                    let share = if skins[other as usize].ties.is_some() { 0.5 } else { 1.0 };
+                    to_others = to_others.min(share * (apart() - self.gap(sizes, own, other as usize)));
+                } else if (q - p).dot(normal) > FACING * squared.sqrt() {
+                    to_itself = to_itself.min(0.5 * (apart() - sizes.gap));
+                }
+            }
+            if near_edge {
+                let inside = field.region.contains(p);
+                let room = if inside { field.region.distance(p, limit + margin) - margin } else { 0.0 };
+                to_others = to_others.min(room);
+            }
+            allowed.to_others.push(to_others);
+            allowed.to_itself.push(to_itself);
+        }
+        allowed
+    }
+}
+
+/// True if any of these points may lie within `reach` of the region's edge.
+fn is_near_edge(points: &[Point], reach: f64, field: &Field) -> bool {
+    let middle = bounds(points).center();
+    let radius = points.iter().map(|p| p.distance(middle)).fold(0.0, f64::max) + reach;
+    !field.region.contains(middle) || field.region.distance(middle, radius) < radius
+}
+
+/// A piece as it is moulded.
+struct Moulded {
+    warps: Vec<Warp>,
+    outlines: Vec<Contour>,
+}
+
+/// How far pieces go, in shares of their pushes, if they do not go farther.
+const SHARES: [f64; 3] = [1.0, 0.6, 0.3];
+
+/// Moulds all pieces as far as they keep apart: two that do not both go less far, until all do. In the end
+/// they may stay as they were.
+fn settle(
+    prepared: &Prepared,
+    templates: &[Template],
+    placement: &mut Placement,
+    fillers: &mut [Filler],
+    skins: &[Skin],
+) {
+    let elements = placement.placed.len();
+    let spacing = prepared.fields.iter().map(|field| field.sizes.spacing).fold(f64::INFINITY, f64::min);
+    let moulded = |i: usize, share: f64| {
+        let skin = &skins[i];
+        let sizes = &prepared.fields[skin.field].sizes;
+        let pushes: Vec<Vec2> = skin.pushes.iter().map(|&push| share * push).collect();
+        let warp = Warp::new(&skin.before, pushes, skin.radius, skin.step);
+        match placement.placed.get(i) {
+            Some(placed) => {
+                let mut bend = placed.bend.clone();
+                bend.warps.push(warp);
+                of_element(&templates[placed.template], placed.pose, bend, sizes)
+            }
+            None => of_filler(&fillers[i - elements], warp, sizes),
+        }
+    };
+    let before = |i: usize| match placement.placed.get(i) {
+        Some(placed) => &placed.outlines,
+        None => &fillers[i - elements].outlines,
+    };
+    let pieces = Pieces { prepared, strokes: placement.strokes(), elements };
+    // Which share each piece has reached; beyond the last it stays.
+    let mut level: Vec<usize> =
+        skins.iter().map(|skin| if skin.is_pushed() { 0 } else { SHARES.len() }).collect();
+    let mut settled: Vec<Option<Moulded>> = skins.iter().map(|_| None).collect();
+    let mut changed: Vec<usize> = (0..skins.len()).filter(|&i| level[i] < SHARES.len()).collect();
+    let mut outlines;
+    loop {
+        let again: Vec<(usize, Option<Moulded>)> = changed
+            .par_iter()
+            .map(|&i| {
+                let shares = SHARES.iter().enumerate().skip(level[i]);
+                let mut first = shares.filter_map(|(k, &share)| Some((k, moulded(i, share)?)));
+                first.next().map_or((SHARES.len(), None), |(k, moulded)| (k, Some(moulded)))
+            })
+            .collect();
+        for (&i, again) in changed.iter().zip(again) {
+            (level[i], settled[i]) = again;
+        }
+        outlines = SegmentGrid::new(prepared.bounds, spacing / 6.0);
+        for (i, moulded) in settled.iter().enumerate() {
+            let contours = moulded.as_ref().map_or(before(i), |moulded| &moulded.outlines);
+            contours.iter().for_each(|contour| outlines.insert_contour(contour, i as u32));
+        }
+        let blamed = |&i: &usize| {
+            let contours = settled[i].as_ref().map_or(before(i), |moulded| &moulded.outlines);
+            pieces.too_near(i, skins[i].field, contours, &outlines)
+        };
+        let mut lowered: Vec<usize> = changed.par_iter().flat_map_iter(blamed).collect();
+        lowered.retain(|&i| level[i] < SHARES.len());
+        lowered.sort_unstable();
+        lowered.dedup();
+        if lowered.is_empty() {
+            break;
+        }
+        lowered.iter().for_each(|&i| level[i] += 1);
+        changed = lowered;
+    }
+    for (i, moulded) in settled.into_iter().enumerate() {
+        let Some(Moulded { warps, outlines }) = moulded else { continue };
+        if i < elements {
+            let placed = &mut placement.placed[i];
+            placed.silhouette = silhouette(&outlines);
+            placed.area = area(&placed.silhouette);
+            (placed.bend.warps, placed.outlines) = (warps, outlines);
+        } else {
+            let filler = &mut fillers[i - elements];
+            filler.area = area(&outlines);
+            (filler.warps, filler.outlines) = (warps, outlines);
+        }
+    }
+    placement.replace_outlines(outlines);
+}
+
+/// Chords of moulded outlines are this much nearer to the truth, and the gaps that are checked this many
+/// tolerances narrower: before, pieces may have kept the gap to a hair.
+const CLOSER: f64 = 0.25;
+const NARROWER: f64 = 0.5;
+
+/// An element with its new outlines. `None` if it is turned over somewhere.
+fn of_element(template: &Template, pose: super::choose::Pose, bend: Bend, sizes: &Sizes) -> Option<Moulded> {
+    let places = template.parts.iter().flat_map(|(path, _)| path.segments()).flat_map(|segment| {
+        // Enough to see a fold, which is as wide as a push is felt.
+        (0..4).map(move |k| segment.eval(f64::from(k) / 4.0))
+    });
+    let posed = |p: Point| Point::new(if pose.along { 1.0 - p.x } else { p.x }, if pose.across { -p.y } else { p.y });
+    if !bend.keeps_sense(places.map(posed)) {
+        return None;
+    }
+    let paths = bent(&template.outer, pose, &bend, FINER * sizes.tolerance());
+    let outlines: Vec<Contour> = paths
+        .iter()
+        .flat_map(|path| flatten(path, CLOSER * sizes.tolerance()))
+        .map(|subpath| subpath.points)
+        .collect();
+    let is_simple = template.crosses_itself || outlines.iter().all(|outline| self_crossings(outline, 1).is_empty());
+    is_simple.then_some(Moulded { warps: bend.warps, outlines })
+}
+
+/// A pebble with its new outline.
+fn of_filler(filler: &Filler, warp: Warp, sizes: &Sizes) -> Option<Moulded> {
+    let warps: Vec<Warp> = filler.warps.iter().cloned().chain([warp]).collect();
+    let path = warped(&filler.plain(), &warps, FINER * sizes.tolerance());
+    let outlines: Vec<Contour> =
+        flatten(&path, CLOSER * sizes.tolerance()).into_iter().map(|subpath| subpath.points).collect();
+    let is_simple = outlines.iter().all(|outline| self_crossings(outline, 1).is_empty());
+    is_simple.then_some(Moulded { warps, outlines })
+}
+
+impl Pieces<'_> {
+    /// The pieces that are nearer than their gap to a piece with these outlines, and that piece itself if
+    /// there are any, or if it leaves its region.
+    fn too_near(&self, own: usize, field: usize, contours: &[Contour], all: &SegmentGrid) -> Vec<usize> {
+        let field = &self.prepared.fields[field];
+        let sizes = &field.sizes;
+        let margin = self.strokes[own] + (sizes.tolerance() - sizes.edge).max(0.0);
+        let narrower = NARROWER * sizes.tolerance();
+        let widest = self.widest_gap(sizes, own);
+        let mut blamed = Vec::new();
+        if !contours.iter().all(|contour| is_inside(contour, margin, &field.region)) {
+            blamed.push(own);
+        }
+        for (p, q) in contours.iter().flat_map(sides) {
+            all.visit(p, q, widest, |a, b, other| {
+                let other = other as usize;
+                let is_known = other == own || blamed.last() == Some(&other);
+                if !is_known && segment_segment(p, q, a, b) < self.gap(sizes, own, other) - narrower {
+                    blamed.extend([own, other]);
+                }
+                true
+            });
+        }
+        blamed
+    }
+}
+
+fn bounds(points: &[Point]) -> Rect {
+    let Some(&first) = points.first() else { return Rect::ZERO };
+    points.iter().fold(Rect::from_points(first, first), |bounds, &p| bounds.union_pt(p))
+}
+
+/// Points on a closed contour: no farther apart than `step`, and wherever it has turned by a third of a
+/// right angle since the last.
+fn sampled(contour: &Contour, step: f64) -> Vec<Point> {
+    const TURN: f64 = 0.52;
+    let n = contour.len();
+    let (mut points, mut walked, mut turned) = (Vec::new(), f64::INFINITY, 0.0);
+    for i in 0..n {
+        let (last, p, next) = (contour[(i + n - 1) % n], contour[i], contour[(i + 1) % n]);
+        let (a, b) = (p - last, next - p);
+        turned += libm::atan2(a.cross(b), a.dot(b)).abs();
+        if turned >= TURN || walked >= step {
+            points.push(p);
+            (walked, turned) = (0.0, 0.0);
+        }
+        let length = b.hypot();
+        let pieces = (length / step).floor().min(1e4);
+        for k in 1..pieces as usize {
+            points.push(p.lerp(next, k as f64 / pieces));
+        }
+        walked = if pieces > 1.0 { length / pieces } else { walked + length };
+    }
+    points
+}
