@@ -37,6 +37,11 @@ impl Warp {
         Warp { samples: PointTable::new(bounds, radius, &numbered), pushes, radius, fade: fade(radius, step) }
     }
 
+    /// The same with pushes that are shorter.
+    pub fn scaled(&self, share: f64) -> Self {
+        Warp { pushes: self.pushes.iter().map(|&push| share * push).collect(), ..self.clone() }
+    }
+
     /// How far a push is felt.
     pub fn radius(&self) -> f64 {
         self.radius

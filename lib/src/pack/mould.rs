@@ -37,14 +37,16 @@ pub(super) struct Stage {
 }
 
 /// Before gaps are filled.
-pub(super) const WIDE: [Stage; 2] = [stage(0.2, 0.14, 9), stage(0.1, 0.07, 7)];
+pub(super) const WIDE: [Stage; 1] = [stage(0.17, 0.14, 8)];
 /// After that, into the corners.
-pub(super) const CLOSE: [Stage; 3] = [stage(0.1, 0.07, 7), stage(0.05, 0.04, 7), stage(0.03, 0.02, 6)];
+pub(super) const CLOSE: [Stage; 2] = [stage(0.1, 0.08, 7), stage(0.04, 0.035, 7)];
 
 const fn stage(radius: f64, most: f64, iterations: usize) -> Stage {
     Stage { radius, most, iterations }
 }
 
+/// How near the samples of other pieces lie, in spacings.
+const OTHERS: f64 = 0.025;
 /// The farthest push in one iteration, in spacings, and as a share of the farthest of all.
 const STEP: (f64, f64) = (0.03, 0.5);
 /// A sample that may move no farther than this, in spacings, will not: what is beside it only grows.
@@ -63,39 +65,56 @@ pub(super) fn mould(
     if !prepared.fields.iter().any(is_moulded) {
         return true;
     }
-    stages.iter().enumerate().all(|(k, &stage)| {
-        let go_on = |done: f64| go_on((k as f64 + done) / stages.len() as f64);
-        one_stage(prepared, templates, placement, fillers, stage, go_on)
-    })
+    let pieces = Pieces { prepared, strokes: placement.strokes(), elements: placement.placed.len() };
+    // Between stages, outlines are moved corner by corner; only what comes of all is bent anew and checked.
+    let fine = |field: usize, outlines: &[Contour]| {
+        let step = CORNERS * prepared.fields[field].sizes.spacing;
+        let contours = outlines.iter().map(|contour| divided(contour, step)).collect();
+        Moving { field, gives_way: true, contours, warps: Vec::new() }
+    };
+    let of_elements = placement.placed.par_iter().map(|placed| fine(placed.field, &placed.outlines));
+    let of_fillers = fillers.par_iter().map(|filler| {
+        Moving { gives_way: filler.motif.gives_way(), ..fine(filler.field, &filler.outlines) }
+    });
+    let mut all: Vec<Moving> = of_elements.chain(of_fillers).collect();
+    let mut complete = true;
+    for (k, &stage) in stages.iter().enumerate() {
+        let skin = |moving: &Moving| Skin::new(moving, &prepared.fields[moving.field], stage);
+        let mut skins: Vec<Skin> = all.par_iter().map(skin).collect();
+        for iteration in 0..stage.iterations {
+            let done = iteration as f64 / stage.iterations as f64;
+            complete = complete && go_on((k as f64 + done) / stages.len() as f64);
+            if complete {
+                pieces.grow(&mut skins, stage);
+            }
+        }
+        all.par_iter_mut().zip(skins).for_each(|(moving, skin)| moving.go(skin));
+    }
+    settle(prepared, templates, placement, fillers, &all);
+    complete
 }
 
-fn one_stage(
-    prepared: &Prepared,
-    templates: &[Template],
-    placement: &mut Placement,
-    fillers: &mut [Filler],
-    stage: Stage,
-    mut go_on: impl FnMut(f64) -> bool,
-) -> bool {
-    let pieces = Pieces { prepared, strokes: placement.strokes(), elements: placement.placed.len() };
-    let skin = |field: usize, gives_way: bool, outlines: &[Contour]| {
-        Skin::new(field, &prepared.fields[field], gives_way, outlines, stage)
-    };
-    let of_elements =
-        placement.placed.par_iter().map(|placed| skin(placed.field, true, &placed.outlines));
-    let of_fillers =
-        fillers.par_iter().map(|filler| skin(filler.field, filler.motif.gives_way(), &filler.outlines));
-    let mut skins: Vec<Skin> = of_elements.chain(of_fillers).collect();
-    let mut complete = true;
-    for iteration in 0..stage.iterations {
-        complete = go_on(iteration as f64 / stage.iterations as f64);
-        if !complete {
-            break;
+/// Corners of an outline are this near to each other when it is moved, in spacings.
+const CORNERS: f64 = 0.03;
+
+/// A piece on its way.
+struct Moving {
+    field: usize,
+    gives_way: bool,
+    contours: Vec<Contour>,
+    warps: Vec<Warp>,
+}
+
+impl Moving {
+    /// Moves as a skin has grown.
+    fn go(&mut self, skin: Skin) {
+        if !skin.is_pushed() {
+            return;
         }
-        pieces.grow(&mut skins, stage);
+        let warp = Warp::new(&skin.before, skin.pushes, skin.radius, skin.step);
+        self.contours.iter_mut().flatten().for_each(|p| *p = warp.point(*p));
+        self.warps.push(warp);
     }
-    settle(prepared, templates, placement, fillers, &skins);
-    complete
 }
 
 /// The samples of a piece's outlines.
@@ -108,6 +127,8 @@ struct Skin {
     beside: Vec<[u32; 2]>,
     /// 1 or -1, by which way the contour runs.
     sense: Vec<f64>,
+    /// The samples that others look at.
+    seen: Vec<u32>,
     pushes: Vec<Vec2>,
     /// Samples that have no room left.
     closed: Vec<bool>,
@@ -118,25 +139,29 @@ struct Skin {
 }
 
 impl Skin {
-    fn new(index: usize, field: &Field, gives_way: bool, outlines: &[Contour], stage: Stage) -> Self {
+    fn new(moving: &Moving, field: &Field, stage: Stage) -> Self {
         /// Samples in a radius.
         const SAMPLES: f64 = 4.0;
         let radius = stage.radius * field.sizes.spacing;
         let step = radius / SAMPLES;
         let (mut before, mut beside, mut sense) = (Vec::new(), Vec::new(), Vec::new());
-        for contour in outlines {
-            let points = sampled(contour, step);
+        let mut corners = Vec::new();
+        for contour in &moving.contours {
+            let (points, is_corner) = sampled(contour, step);
             let (start, n) = (before.len() as u32, points.len() as u32);
             beside.extend((0..n).map(|i| [start + (i + n - 1) % n, start + (i + 1) % n]));
             sense.extend(std::iter::repeat_n(signed_area(contour).signum(), points.len()));
             before.extend(points);
+            corners.extend(is_corner);
         }
-        let moves = gives_way && field.params.mould > 0.0 && field.params.iterations > 0;
+        let moves = moving.gives_way && field.params.mould > 0.0 && field.params.iterations > 0;
         let ties = (moves && !before.is_empty()).then(|| Ties::new(&before, radius, step));
         let pushes = vec![Vec2::ZERO; before.len()];
         let now = before.clone();
         let closed = vec![false; before.len()];
-        Skin { field: index, before, now, beside, sense, pushes, closed, ties, radius, step }
+        let every = ((OTHERS * field.sizes.spacing / step) as usize).max(1);
+        let seen = (0..before.len()).filter(|&i| corners[i] || i % every == 0).map(|i| i as u32).collect();
+        Skin { field: moving.field, before, now, beside, sense, seen, pushes, closed, ties, radius, step }
     }
 
     fn is_pushed(&self) -> bool {
@@ -196,7 +221,11 @@ impl Pieces<'_> {
     /// One iteration.
     fn grow(&self, skins: &mut [Skin], stage: Stage) {
         let fields = &self.prepared.fields;
-        let all = skins.iter().zip(0..).flat_map(|(skin, i)| skin.now.iter().map(move |&p| (p, i)));
+        let seen = |(skin, i): (&Skin, u32)| {
+            let places = skin.seen.iter().map(|&k| (skin.now[k as usize], i));
+            places.collect::<Vec<_>>()
+        };
+        let all = skins.iter().zip(0..).flat_map(seen);
         let all: Vec<(Point, u32)> = all.collect();
         let cell = fields.iter().map(|field| field.sizes.safe_gap()).fold(0.0, f64::max);
         let table = PointTable::new(self.prepared.bounds, cell, &all);
@@ -233,7 +262,7 @@ impl Pieces<'_> {
         let field = &self.prepared.fields[skin.field];
         let sizes = &field.sizes;
         // Nearest samples are up to half a step beside the nearest points.
-        let beside = (skin.step / 2.0).powi(2);
+        let beside = (skin.step.max(OTHERS * sizes.spacing) / 2.0).powi(2);
         let reach = self.widest_gap(sizes, own) + 2.0 * limit + skin.step;
         let margin = self.strokes[own] + sizes.tolerance();
         let near_edge = is_near_edge(&skin.now, limit + margin, field);
@@ -294,22 +323,20 @@ fn settle(
     templates: &[Template],
     placement: &mut Placement,
     fillers: &mut [Filler],
-    skins: &[Skin],
+    all: &[Moving],
 ) {
     let elements = placement.placed.len();
     let spacing = prepared.fields.iter().map(|field| field.sizes.spacing).fold(f64::INFINITY, f64::min);
     let moulded = |i: usize, share: f64| {
-        let skin = &skins[i];
-        let sizes = &prepared.fields[skin.field].sizes;
-        let pushes: Vec<Vec2> = skin.pushes.iter().map(|&push| share * push).collect();
-        let warp = Warp::new(&skin.before, pushes, skin.radius, skin.step);
+        let sizes = &prepared.fields[all[i].field].sizes;
+        let warps = all[i].warps.iter().map(|warp| warp.scaled(share));
         match placement.placed.get(i) {
             Some(placed) => {
                 let mut bend = placed.bend.clone();
-                bend.warps.push(warp);
+                bend.warps.extend(warps);
                 of_element(&templates[placed.template], placed.pose, bend, sizes)
             }
-            None => of_filler(&fillers[i - elements], warp, sizes),
+            None => of_filler(&fillers[i - elements], warps.collect(), sizes),
         }
     };
     let before = |i: usize| match placement.placed.get(i) {
@@ -319,9 +346,9 @@ fn settle(
     let pieces = Pieces { prepared, strokes: placement.strokes(), elements };
     // Which share each piece has reached; beyond the last it stays.
     let mut level: Vec<usize> =
-        skins.iter().map(|skin| if skin.is_pushed() { 0 } else { SHARES.len() }).collect();
-    let mut settled: Vec<Option<Moulded>> = skins.iter().map(|_| None).collect();
-    let mut changed: Vec<usize> = (0..skins.len()).filter(|&i| level[i] < SHARES.len()).collect();
+        all.iter().map(|moving| if moving.warps.is_empty() { SHARES.len() } else { 0 }).collect();
+    let mut settled: Vec<Option<Moulded>> = all.iter().map(|_| None).collect();
+    let mut changed: Vec<usize> = (0..all.len()).filter(|&i| level[i] < SHARES.len()).collect();
     let mut outlines;
     loop {
         let again: Vec<(usize, Option<Moulded>)> = changed
@@ -342,7 +369,7 @@ fn settle(
         }
         let blamed = |&i: &usize| {
             let contours = settled[i].as_ref().map_or(before(i), |moulded| &moulded.outlines);
-            pieces.too_near(i, skins[i].field, contours, &outlines)
+            pieces.too_near(i, all[i].field, contours, &outlines)
         };
         let mut lowered: Vec<usize> = changed.par_iter().flat_map_iter(blamed).collect();
         lowered.retain(|&i| level[i] < SHARES.len());
@@ -396,8 +423,8 @@ fn of_element(template: &Template, pose: super::choose::Pose, bend: Bend, sizes:
 }
 
 /// A pebble with its new outline.
-fn of_filler(filler: &Filler, warp: Warp, sizes: &Sizes) -> Option<Moulded> {
-    let warps: Vec<Warp> = filler.warps.iter().cloned().chain([warp]).collect();
+fn of_filler(filler: &Filler, warps: Vec<Warp>, sizes: &Sizes) -> Option<Moulded> {
+    let warps: Vec<Warp> = filler.warps.iter().cloned().chain(warps).collect();
     let path = warped(&filler.plain(), &warps, FINER * sizes.tolerance());
     let outlines: Vec<Contour> =
         flatten(&path, CLOSER * sizes.tolerance()).into_iter().map(|subpath| subpath.points).collect();
@@ -437,26 +464,39 @@ fn bounds(points: &[Point]) -> Rect {
     points.iter().fold(Rect::from_points(first, first), |bounds, &p| bounds.union_pt(p))
 }
 
+/// A contour with more corners: none farther from the next than `step`.
+fn divided(contour: &Contour, step: f64) -> Contour {
+    let next = contour.iter().cycle().skip(1);
+    let pieces = |(&p, &next): (&Point, &Point)| {
+        let count = (p.distance(next) / step).ceil().clamp(1.0, 1e4);
+        (0..count as usize).map(move |k| p.lerp(next, k as f64 / count))
+    };
+    contour.iter().zip(next).flat_map(pieces).collect()
+}
+
 /// Points on a closed contour: no farther apart than `step`, and wherever it has turned by a third of a
-/// right angle since the last.
-fn sampled(contour: &Contour, step: f64) -> Vec<Point> {
+/// right angle since the last. With each, whether it is there for a turn.
+fn sampled(contour: &Contour, step: f64) -> (Vec<Point>, Vec<bool>) {
     const TURN: f64 = 0.52;
     let n = contour.len();
-    let (mut points, mut walked, mut turned) = (Vec::new(), f64::INFINITY, 0.0);
+    let (mut points, mut corners) = (Vec::new(), Vec::new());
+    let (mut walked, mut turned) = (f64::INFINITY, 0.0);
     for i in 0..n {
         let (last, p, next) = (contour[(i + n - 1) % n], contour[i], contour[(i + 1) % n]);
         let (a, b) = (p - last, next - p);
         turned += libm::atan2(a.cross(b), a.dot(b)).abs();
         if turned >= TURN || walked >= step {
             points.push(p);
+            corners.push(turned >= TURN);
             (walked, turned) = (0.0, 0.0);
         }
         let length = b.hypot();
         let pieces = (length / step).floor().min(1e4);
         for k in 1..pieces as usize {
             points.push(p.lerp(next, k as f64 / pieces));
+            corners.push(false);
         }
         walked = if pieces > 1.0 { length / pieces } else { walked + length };
     }
-    points
+    (points, corners)
 }
