@@ -35,7 +35,7 @@ pub(super) const NOOKS: Room = Room { smallest: 0.014, step: 1.0 / 24.0, nooks: 
 
 /// The widest gap that stays as it is, over the mean of all. In channels of one width, three pieces that meet
 /// leave 1.15.
-const WIDEST: f64 = 1.42;
+const WIDEST: f64 = 1.36;
 
 impl Room {
     /// Where fillers may be, and the gap around them.

@@ -399,7 +399,7 @@ fn settle(
 
 /// Chords of moulded outlines are this much nearer to the truth, and the gaps that are checked this many
 /// tolerances narrower: before, pieces may have kept the gap to a hair.
-const CLOSER: f64 = 0.25;
+const CLOSER: f64 = 0.5;
 const NARROWER: f64 = 0.5;
 
 /// An element with its new outlines. `None` if it is turned over somewhere.
