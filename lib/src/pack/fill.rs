@@ -14,6 +14,8 @@ use crate::geom::region::Region;
 use crate::geom::warp::Warp;
 use kurbo::{Affine, BezPath, Point, Vec2};
 
+/// Rounds in which the middle of a gap is found.
+const ROUNDS: usize = 10;
 /// The largest radius, in spacings: larger reads as an element of another family.
 const LARGEST: f64 = 0.21;
 
@@ -31,11 +33,11 @@ pub(super) struct Room {
 
 /// Smaller ones read as dust where there is room for others.
 pub(super) const GAPS: Room = Room { smallest: 0.05, step: 1.0 / 13.0, nooks: false };
-pub(super) const NOOKS: Room = Room { smallest: 0.014, step: 1.0 / 24.0, nooks: true };
+pub(super) const NOOKS: Room = Room { smallest: 0.014, step: 1.0 / 36.0, nooks: true };
 
 /// The widest gap that stays as it is, over the mean of all. In channels of one width, three pieces that meet
 /// leave 1.15.
-const WIDEST: f64 = 1.36;
+const WIDEST: f64 = 1.38;
 
 impl Room {
     /// Where fillers may be, and the gap around them.
@@ -170,7 +172,7 @@ fn fill_field(
         if gaps.clearance(inked(placement), place.at()) < smallest - gaps.step {
             continue;
         }
-        let (centre, radius) = gaps.centred(inked(placement), place.at());
+        let (centre, radius) = gaps.centred(inked(placement), place.at(), ROUNDS);
         if radius < smallest {
             continue;
         }

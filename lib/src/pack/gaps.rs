@@ -179,9 +179,8 @@ impl<'a> Gaps<'a> {
         to_elements.min(self.region.distance(at, self.reach))
     }
 
-    /// Climbs to the middle of a gap, and tells the clearance there.
-    pub fn centred(&self, inked: Inked, mut at: Point) -> (Point, f64) {
-        const ROUNDS: usize = 6;
+    /// Climbs to the middle of a gap in so many rounds, and tells the clearance there.
+    pub fn centred(&self, inked: Inked, mut at: Point, rounds: usize) -> (Point, f64) {
         // Four ways alone would not see a ridge that runs between them.
         const WAYS: [[(f64, f64); 4]; 2] = [
             [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)],
@@ -189,7 +188,7 @@ impl<'a> Gaps<'a> {
         ];
         let mut step = self.step;
         let mut best = self.clearance(inked, at);
-        for _ in 0..ROUNDS {
+        for _ in 0..rounds {
             let moved = WAYS.into_iter().any(|ways| {
                 let before = best;
                 for (x, y) in ways {

@@ -28,6 +28,8 @@ const SLENDER: f64 = 2.6;
 /// The farthest that a line runs from the middle of its gap, in half widths of the gap.
 const FARTHEST: f64 = 6.0;
 
+/// Rounds in which the middle of a gap is found.
+const ROUNDS: usize = 4;
 /// How fine the gaps are seen, in spacings.
 const STEP: f64 = 1.0 / 13.0;
 
@@ -104,7 +106,7 @@ fn settled(
     heap: &mut std::collections::BinaryHeap<Place>,
     sizes: &Sizes,
 ) -> Option<(Point, f64)> {
-    let (centre, radius) = gaps.centred(plain(outlines), place.at());
+    let (centre, radius) = gaps.centred(plain(outlines), place.at(), ROUNDS);
     if radius < NARROWEST * sizes.spacing {
         return None;
     }

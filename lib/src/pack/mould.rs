@@ -39,7 +39,7 @@ pub(super) struct Stage {
 /// Before gaps are filled.
 pub(super) const WIDE: [Stage; 1] = [stage(0.17, 0.14, 8)];
 /// After that, into the corners.
-pub(super) const CLOSE: [Stage; 2] = [stage(0.1, 0.08, 7), stage(0.04, 0.035, 7)];
+pub(super) const CLOSE: [Stage; 3] = [stage(0.1, 0.07, 5), stage(0.05, 0.04, 5), stage(0.03, 0.02, 4)];
 
 const fn stage(radius: f64, most: f64, iterations: usize) -> Stage {
     Stage { radius, most, iterations }
