@@ -13,8 +13,11 @@ use kurbo::{Point, Rect};
 use rinceau_format::{Artwork, Error, Part, Scene};
 use std::collections::BTreeMap;
 
-/// Cells of the raster, about.
-const CELLS: f64 = 6.4e6;
+/// Cells of the raster, about, and at most.
+const CELLS: f64 = 4e5;
+const MOST_CELLS: f64 = 6.4e6;
+/// Half a gap is at least this many cells wide, if that does not take too many.
+const FINE: f64 = 7.0;
 
 /// A raster of what is inside, and of what is drawn there.
 pub struct Raster {
@@ -48,14 +51,17 @@ pub struct Raster {
 ///
 /// Errors: a container that cannot be read; there is nothing to measure in.
 pub fn measure(scene: &Scene, artwork: &Artwork) -> Result<BTreeMap<String, f64>, Error> {
-    Ok(raster_of(scene, artwork)?.1.measure())
+    let (_, raster) = raster_of(scene, artwork, CELLS)?;
+    let finer = (FINE * raster.cell / raster.half_width().max(f64::MIN_POSITIVE)).powi(2);
+    let cells = (finer * CELLS).clamp(CELLS, MOST_CELLS);
+    Ok(if cells > CELLS { raster_of(scene, artwork, cells)?.1.measure() } else { raster.measure() })
 }
 
 /// Discs that fill the gaps of an artwork, the largest first: middle and radius.
 ///
 /// Errors: as [`measure`].
 pub fn gap_discs(scene: &Scene, artwork: &Artwork) -> Result<Vec<(Point, f64)>, Error> {
-    let (origin, raster) = raster_of(scene, artwork)?;
+    let (origin, raster) = raster_of(scene, artwork, CELLS)?;
     let middle = |i: usize| {
         let at = |i: usize| (i as f64 + 0.5) * raster.cell;
         Point::new(origin.x + at(i % raster.columns), origin.y + at(i / raster.columns))
@@ -63,10 +69,10 @@ pub fn gap_discs(scene: &Scene, artwork: &Artwork) -> Result<Vec<(Point, f64)>, 
     Ok(raster.discs().into_iter().map(|(i, radius)| (middle(i), radius)).collect())
 }
 
-/// The raster of an artwork, and its corner.
-fn raster_of(scene: &Scene, artwork: &Artwork) -> Result<(Point, Raster), Error> {
+/// The raster of an artwork in about so many cells, and its corner.
+fn raster_of(scene: &Scene, artwork: &Artwork, cells: f64) -> Result<(Point, Raster), Error> {
     let shapes = Shapes::new(scene, &[])?;
-    let cell = (shapes.bounds.area() / CELLS).sqrt().max(f64::MIN_POSITIVE);
+    let cell = (shapes.bounds.area() / cells).sqrt().max(f64::MIN_POSITIVE);
     // The cells around it are outside, so that its edge is known as one.
     let bounds = shapes.bounds.inflate(cell, cell);
     let mut raster = Raster::new(bounds, cell);
@@ -123,7 +129,9 @@ impl Raster {
 
     /// Takes out what is fixed, with the small holes in it.
     fn add_fixed(&mut self, origin: Point, contours: &[Contour]) {
-        runs(contours, origin, self.cell, (self.columns, self.inside.len()), |run| self.inside[run].fill(false));
+        runs(contours, origin, self.cell, (self.columns, self.inside.len()), |run| {
+            self.inside[run].fill(false)
+        });
     }
 
     /// Adds a piece of ink.
@@ -236,6 +244,12 @@ impl Raster {
         let more = |i: usize| if self.inside[i] { f64::from(covered[i].saturating_sub(1)) } else { 0.0 };
         let inside = self.inside.iter().filter(|&&inside| inside).count();
         (0..covered.len()).map(more).sum::<f64>() / (inside as f64).max(1.0)
+    }
+
+    /// Twice the mean distance in gaps.
+    fn half_width(&self) -> f64 {
+        let distances = self.gaps().0;
+        2.0 * distances.iter().sum::<f64>() / (distances.len() as f64).max(1.0)
     }
 
     /// The measures.

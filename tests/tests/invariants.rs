@@ -61,7 +61,7 @@ proptest! {
         match pack(&scene, &[("spacing", format!("{spacing:.3}"))], seed) {
             Ok(artwork) => {
                 let container = Region::new(contours(&scene.containers[0].outlines[0].path)).unwrap();
-                check(&artwork, &container, &[], (spacing / 8.0, 0.7 * spacing / 8.0));
+                check(&artwork, &container, &[], (spacing / 8.0, 0.42 * spacing / 8.0));
             }
             Err(error) => prop_assert!(["nothing-fits", "flat-element"].contains(&error.code()), "{error}"),
         }

@@ -339,7 +339,7 @@ fn an_element_width_larger_than_the_shape() {
 
 #[test]
 fn a_parameter_that_a_container_misspells() {
-    insta::assert_snapshot!(case(svg(&CIRCLE.replace("/>", " rinceau:spacng=\"8\"/>"))).refusal(), @"2:1: There is no parameter 'spacng'. Use one of spacing, elements, min-gap, palette, max-length, min-length, edge, fillers, filler-gap, stretch, variety, sense, symmetry, thread, iterations, shift, show-gaps, show-flow, rounding, distress, connect, bridge, border. [unknown-parameter]");
+    insta::assert_snapshot!(case(svg(&CIRCLE.replace("/>", " rinceau:spacng=\"8\"/>"))).refusal(), @"2:1: There is no parameter 'spacng'. Use one of spacing, elements, min-gap, palette, max-length, min-length, edge, fillers, filler-gap, stretch, mould, variety, sense, symmetry, thread, iterations, shift, show-gaps, show-flow, rounding, distress, connect, bridge, border. [unknown-parameter]");
 }
 
 #[test]

@@ -99,7 +99,8 @@ impl Ties {
         let numbered: Vec<(Point, u32)> = samples.iter().zip(0..).map(|(&p, i)| (p, i)).collect();
         let table = PointTable::new(bounds, radius, &numbered);
         let near = samples.iter().map(|&p| {
-            let weights = table.near(p, radius).map(|(q, i)| (i, weight((p - q).hypot2() / (radius * radius))));
+            let weights =
+                table.near(p, radius).map(|(q, i)| (i, weight((p - q).hypot2() / (radius * radius))));
             let mut weights: Vec<(u32, f64)> = weights.filter(|(_, w)| *w > 0.0).collect();
             let total = fade(radius, step) + weights.iter().map(|(_, w)| w).sum::<f64>();
             weights.iter_mut().for_each(|(_, w)| *w /= total);

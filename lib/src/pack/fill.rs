@@ -2,6 +2,7 @@
 //! empty circles, largest first, each with a gap around it.
 
 use super::gaps::{Gaps, Inked, Place};
+use super::insert::Ground;
 use super::motif::{Form, Motif, Pocket};
 use super::place::Placement;
 use super::prepare::{Field, Prepared};
@@ -95,15 +96,14 @@ impl Filler {
 
 /// Fills the gaps of every container that asks for it. False if the time ran out first.
 pub(super) fn fill(
-    prepared: &Prepared,
-    placement: &mut Placement,
-    templates: &[Template],
+    ground: &Ground,
     motifs: &[Vec<Motif>],
-    flows: &[Option<DirectionField>],
-    room: Room,
+    placement: &mut Placement,
     fillers: &mut Vec<Filler>,
+    room: Room,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> bool {
+    let &Ground { prepared, templates, flows, .. } = ground;
     let kinds = |index: usize| Kinds { templates, motifs: &motifs[index], flow: flows[index].as_ref() };
     let mut covered = placement.silhouettes();
     covered.extend(fillers.iter().flat_map(|filler| filler.outlines.iter().cloned()));
@@ -113,7 +113,11 @@ pub(super) fn fill(
             return false;
         }
         let (region, gap) = room.of(field);
-        let sizes = (LARGEST * field.sizes.spacing, gap + kinds(index).stroke(field), room.step * field.sizes.spacing);
+        let sizes = (
+            LARGEST * field.sizes.spacing,
+            gap + kinds(index).stroke(field),
+            room.step * field.sizes.spacing,
+        );
         all.push((index, Gaps::new(field, region, &covered, sizes)));
     }
     let mean = if room.nooks { mean_gap(&all, prepared) - 0.3 * placement.widest_stroke() } else { 0.0 };
@@ -121,7 +125,9 @@ pub(super) fn fill(
         let field = &prepared.fields[index];
         let done = 0.5 + 0.5 * done as f64 / prepared.fields.len() as f64;
         let smallest = room.smallest(field, mean);
-        if !fill_field((index, field), &kinds(index), placement, fillers, (room, gaps, smallest), || go_on(done)) {
+        if !fill_field((index, field), &kinds(index), placement, fillers, (room, gaps, smallest), || {
+            go_on(done)
+        }) {
             return false;
         }
     }
@@ -230,7 +236,8 @@ fn best(
         // The last always goes.
         let last = forms.pop().map(|form| in_place(motif, form));
         let mut tried = forms.into_iter().map(|form| in_place(motif, form));
-        let goes = |filler: &Filler| placement.filler_goes(&filler.outlines, filler.stroke, (field, region, gap));
+        let goes =
+            |filler: &Filler| placement.filler_goes(&filler.outlines, filler.stroke, (field, region, gap));
         tried.find(goes).or(last)
     };
     let all = kinds.motifs.iter().filter_map(|&motif| largest(motif));

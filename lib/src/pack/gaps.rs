@@ -113,7 +113,8 @@ impl<'a> Gaps<'a> {
         let in_region = covered(region.contours(), self.origin, step, columns, rows);
         let gap = self.gap;
         // What is covered or outside must not look like more room than the gap beside it.
-        let signed = |squared: f64, free: bool| if free { squared.sqrt() * step } else { -squared.sqrt() * step };
+        let signed =
+            |squared: f64, free: bool| if free { squared.sqrt() * step } else { -squared.sqrt() * step };
         let estimate = |i: usize| {
             let to_elements = signed(to_elements[i], !self.elements[i]) - gap;
             to_elements.min(signed(to_boundary[i], in_region[i]))

@@ -58,8 +58,7 @@ pub(super) fn motifs(templates: &[Template], field: &Field, scene: &Scene) -> Re
                 motifs.extend((0..templates.len()).filter(named).map(Motif::Element));
                 if motifs.len() == before {
                     let sentence = format!("Nothing that fills gaps is called '{name}'");
-                    let remedy =
-                        "Use pebbles, dots, diamonds, drops, shapes, none, or the id, kind or family of an element";
+                    let remedy = "Use pebbles, dots, diamonds, drops, shapes, none, or the id, kind or family of an element";
                     let error = Error::new("no-filler", sentence, remedy);
                     return Err(at_container(error, "fillers", field, scene));
                 }

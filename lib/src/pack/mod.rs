@@ -11,7 +11,8 @@
 //!
 //! 6. Refine the composition: shift, extend and grow (4.6), with small elements in the gaps that show
 //!    (6): `refine`, `insert`.
-//! 7. Fill the gaps that are left (6), or draw their own shapes (5): `fill`, `negative`.
+//! 7. Mould outlines into the gaps, and fill those that are left (6), or draw their own shapes (5): `mould`,
+//!    `fill`, `negative`.
 //! 8. Draw it, worn, rounded or as one piece if that is asked for (5): `artwork`, `finish`, `connect`.
 //!
 //! Departures are argued where they happen: lines on the boundary (`lines`), lines cut into
@@ -53,7 +54,9 @@ use crate::rng::Rng;
 use crate::shapes::closed;
 use artwork::Made;
 use blob::Blob;
+use fill::Filler;
 use insert::Ground;
+use motif::Motif;
 use place::Placement;
 use prepare::Prepared;
 use rinceau_format::{Artwork, Error, Scene};
@@ -86,24 +89,12 @@ pub fn generate(
     let (blobs, flows, traced) = rooms(&prepared, &templates, &usable, rng, progress);
     let ground = Ground { prepared: &prepared, templates: &templates, usable: &usable, flows: &flows };
     let (mut placement, composed) = compose(&ground, &blobs, rng, progress);
-    let mut complete = traced && composed;
-    // Out of time, dots would fill what elements should have.
-    let (mut fillers, mut negative) = (Vec::new(), Vec::new());
-    if complete {
-        let step = |done| progress.step("mould", done);
-        complete = mould::mould(&prepared, &templates, &mut placement, &mut [], &mould::WIDE, step);
-    }
-    if complete {
-        progress.step("fill", 0.0);
-        let step = |done| progress.step("fill", done);
-        complete = fill::fill(&prepared, &mut placement, &templates, &motifs, &flows, fill::GAPS, &mut fillers, step);
-        let step = |done| progress.step("mould", done);
-        complete = complete && mould::mould(&prepared, &templates, &mut placement, &mut fillers, &mould::CLOSE, step);
-        let step = |done| progress.step("fill", done);
-        complete = complete && fill::fill(&prepared, &mut placement, &templates, &motifs, &flows, fill::NOOKS, &mut fillers, step);
-        let (all, finished) = negative::shapes(&prepared, &placement, |done| progress.step("fill", done));
-        (negative, complete) = (all, complete && finished);
-    }
+    // Out of time, fillers would take what elements should have.
+    let (fillers, negative, closed) = match traced && composed {
+        true => close_gaps(&ground, &motifs, &mut placement, progress),
+        false => (Vec::new(), Vec::new(), false),
+    };
+    let complete = traced && composed && closed;
     if placement.placed.is_empty() {
         return Err(nothing_placed(complete));
     }
@@ -134,6 +125,33 @@ pub fn generate(
     artwork.groups.extend(flow::flow(&prepared, &flows));
     artwork.counts.insert("flow-angle".to_owned(), flow_angle(&placement, &flows));
     Ok(artwork)
+}
+
+/// Step 7: outlines moulded into the gaps, and what fills the rest. False if the time ran out first.
+fn close_gaps(
+    ground: &Ground,
+    motifs: &[Vec<Motif>],
+    placement: &mut Placement,
+    progress: &mut dyn Progress,
+) -> (Vec<Filler>, Vec<negative::Shape>, bool) {
+    let (prepared, templates) = (ground.prepared, ground.templates);
+    let mut fillers = Vec::new();
+    let mould =
+        |placement: &mut Placement, fillers: &mut [Filler], stages: &[_], progress: &mut dyn Progress| {
+            mould::mould(prepared, templates, placement, fillers, stages, |done| progress.step("mould", done))
+        };
+    let fill = |placement: &mut Placement, fillers: &mut Vec<_>, room, progress: &mut dyn Progress| {
+        fill::fill(ground, motifs, placement, fillers, room, |done| progress.step("fill", done))
+    };
+    let complete = mould(placement, &mut [], &mould::WIDE, progress)
+        && fill(placement, &mut fillers, fill::GAPS, progress)
+        && mould(placement, &mut fillers, &mould::CLOSE, progress)
+        && fill(placement, &mut fillers, fill::NOOKS, progress);
+    if !complete {
+        return (fillers, Vec::new(), false);
+    }
+    let (negative, complete) = negative::shapes(prepared, placement, |done| progress.step("fill", done));
+    (fillers, negative, complete)
 }
 
 /// Steps 5 and 6: elements in the rooms, refined, and in their places. False if the time ran out first.

@@ -73,9 +73,9 @@ pub(super) fn mould(
         Moving { field, gives_way: true, contours, warps: Vec::new() }
     };
     let of_elements = placement.placed.par_iter().map(|placed| fine(placed.field, &placed.outlines));
-    let of_fillers = fillers.par_iter().map(|filler| {
-        Moving { gives_way: filler.motif.gives_way(), ..fine(filler.field, &filler.outlines) }
-    });
+    let of_fillers = fillers
+        .par_iter()
+        .map(|filler| Moving { gives_way: filler.motif.gives_way(), ..fine(filler.field, &filler.outlines) });
     let mut all: Vec<Moving> = of_elements.chain(of_fillers).collect();
     let mut complete = true;
     for (k, &stage) in stages.iter().enumerate() {
@@ -408,7 +408,8 @@ fn of_element(template: &Template, pose: super::choose::Pose, bend: Bend, sizes:
         // Enough to see a fold, which is as wide as a push is felt.
         (0..4).map(move |k| segment.eval(f64::from(k) / 4.0))
     });
-    let posed = |p: Point| Point::new(if pose.along { 1.0 - p.x } else { p.x }, if pose.across { -p.y } else { p.y });
+    let posed =
+        |p: Point| Point::new(if pose.along { 1.0 - p.x } else { p.x }, if pose.across { -p.y } else { p.y });
     if !bend.keeps_sense(places.map(posed)) {
         return None;
     }
@@ -418,7 +419,8 @@ fn of_element(template: &Template, pose: super::choose::Pose, bend: Bend, sizes:
         .flat_map(|path| flatten(path, CLOSER * sizes.tolerance()))
         .map(|subpath| subpath.points)
         .collect();
-    let is_simple = template.crosses_itself || outlines.iter().all(|outline| self_crossings(outline, 1).is_empty());
+    let is_simple =
+        template.crosses_itself || outlines.iter().all(|outline| self_crossings(outline, 1).is_empty());
     is_simple.then_some(Moulded { warps: bend.warps, outlines })
 }
 

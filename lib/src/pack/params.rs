@@ -42,11 +42,11 @@ crate::params! {
         max_length: Length = "max-length", "Longest element", More, Kind::Length, "0";
         #[doc = "Shortest element; where only a shorter one would fit, the space stays empty. 0 chooses 1.5 element widths"]
         min_length: Length = "min-length", "Shortest element", More, Kind::Length, "0";
-        #[doc = "Empty distance kept from the outline of the shape. 0 chooses half the gap"]
+        #[doc = "Empty distance kept from the outline of the shape. 0 chooses a little less than the gap, or all of a gap that you chose yourself"]
         edge: Length = "edge", "Distance from outline", More, Kind::Length, "0";
-        #[doc = "What goes into the gaps that are left: small dots, diamonds or drops, names of your own small elements, shapes that follow the elements around them, or nothing"]
+        #[doc = "What goes into the gaps that are left: pebbles that take the form of their gap, dots, diamonds or drops, names of your own small elements, shapes that follow the elements around them, or nothing"]
         fillers: String = "fillers", "Fill gaps with", Basic, Kind::Names(FILLERS), "pebbles";
-        #[doc = "Empty distance kept around what fills the gaps. 0 chooses seven tenths of the gap, or all of a gap that you chose yourself"]
+        #[doc = "Empty distance kept around what fills the gaps. 0 chooses a little less than the gap, half of it for specks in nooks, or all of a gap that you chose yourself"]
         filler_gap: Length = "filler-gap", "Gap around fillers", More, Kind::Length, "0";
         #[doc = "How freely an element's width may swell and shrink along its length to fill the space it has: 1 keeps its proportions, 3 is very free"]
         stretch: f64 = "stretch", "Swelling", More, Kind::Number { min: 1.0, max: 3.0 }, "1.6";
@@ -160,6 +160,17 @@ impl Sizes {
         // Nothing is so thick that a larger radius would be seen.
         let rounding = or(params.rounding, 0.0).min(spacing / 4.0);
         let bridge = or(params.bridge, gap);
-        Sizes { spacing, min_length, max_length, gap, filler_gap, nook_gap, edge, nook_edge, rounding, bridge }
+        Sizes {
+            spacing,
+            min_length,
+            max_length,
+            gap,
+            filler_gap,
+            nook_gap,
+            edge,
+            nook_edge,
+            rounding,
+            bridge,
+        }
     }
 }

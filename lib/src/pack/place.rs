@@ -50,8 +50,6 @@ pub(super) struct Placed {
     pub centre: Point,
     pub area: f64,
     pub spine: Vec<Point>,
-    /// Half stroke width.
-    pub stroke: f64,
     /// What keeps apart from neighbours.
     pub outlines: Vec<Contour>,
     /// Outer contours alone, without holes.
@@ -168,7 +166,6 @@ impl Placement {
             area: area(&silhouette),
             spine: (0..=24).map(|i| bend.spine.jet(f64::from(i) / 24.0).p).collect(),
             bend,
-            stroke,
             outlines,
             silhouette,
         });
@@ -224,7 +221,9 @@ impl Placement {
         // Where the outline wants next to no distance, chords must not hide an excess.
         let margin = stroke + (field.sizes.tolerance() - field.sizes.edge).max(0.0);
         let gap = field.sizes.safe_gap() + stroke;
-        outlines.iter().all(|outline| is_inside(outline, margin, &field.region) && self.is_clear(outline, gap))
+        outlines
+            .iter()
+            .all(|outline| is_inside(outline, margin, &field.region) && self.is_clear(outline, gap))
     }
 
     fn is_clear(&self, outline: &Contour, gap: f64) -> bool {
