@@ -114,6 +114,11 @@ impl Ties {
         self.near[i].iter().map(|&(j, _)| values[j as usize]).fold(f64::INFINITY, f64::min)
     }
 
+    /// True if any of the samples near one is so.
+    pub fn any(&self, is_so: &[bool], i: usize) -> bool {
+        self.near[i].iter().any(|&(j, _)| is_so[j as usize])
+    }
+
     /// How far a sample moves.
     pub fn push(&self, pushes: &[Vec2], i: usize) -> Vec2 {
         self.near[i].iter().fold(Vec2::ZERO, |sum, &(j, w)| sum + w * pushes[j as usize])

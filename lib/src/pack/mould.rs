@@ -235,7 +235,7 @@ impl Pieces<'_> {
             let field = &fields[skin.field];
             let spacing = field.sizes.spacing;
             let limit = STEP.0.min(STEP.1 * stage.most) * spacing;
-            let allowed = self.allowances(own, skin, skins, &table, limit);
+            let allowed = self.allowances(own, (skin, ties), skins, &table, limit);
             let (pushes, now) = skin.grown(ties, &allowed, field.params.mould * stage.most * spacing);
             let closed = allowed.to_others.iter().map(|&by| by <= CLOSED * spacing).collect();
             Some((pushes, now, closed))
@@ -252,7 +252,7 @@ impl Pieces<'_> {
     fn allowances(
         &self,
         own: usize,
-        skin: &Skin,
+        (skin, ties): (&Skin, &Ties),
         skins: &[Skin],
         table: &PointTable,
         limit: f64,
@@ -266,9 +266,13 @@ impl Pieces<'_> {
         let reach = self.widest_gap(sizes, own) + 2.0 * limit + skin.step;
         let margin = self.strokes[own] + sizes.tolerance();
         let near_edge = is_near_edge(&skin.now, limit + margin, field);
+        // A sample with no room left holds those near it; who has none but such beside it need not ask.
+        let held = |i: usize| ties.any(&skin.closed, i);
+        let free: Vec<bool> = (0..skin.now.len()).map(|i| !held(i)).collect();
+        let asked: Vec<bool> = (0..skin.now.len()).map(|i| !skin.closed[i] && ties.any(&free, i)).collect();
         let mut allowed = Allowances { to_others: Vec::new(), to_itself: Vec::new() };
         for (i, &p) in skin.now.iter().enumerate() {
-            if skin.closed[i] {
+            if !asked[i] {
                 allowed.to_others.push(0.0);
                 allowed.to_itself.push(0.0);
                 continue;
