@@ -47,6 +47,12 @@ const fn stage(radius: f64, most: f64, iterations: usize) -> Stage {
 
 /// How near the samples of other pieces lie, in spacings.
 const OTHERS: f64 = 0.025;
+/// Where gaps are to become shapes themselves, they stay as wide as they are.
+fn is_moulded(field: &Field) -> bool {
+    let params = &field.params;
+    params.mould > 0.0 && params.iterations > 0 && !params.has_shapes()
+}
+
 /// The farthest push in one iteration, in spacings, and as a share of the farthest of all.
 const STEP: (f64, f64) = (0.03, 0.5);
 /// A sample that may move no farther than this, in spacings, will not: what is beside it only grows.
@@ -61,7 +67,6 @@ pub(super) fn mould(
     stages: &[Stage],
     mut go_on: impl FnMut(f64) -> bool,
 ) -> bool {
-    let is_moulded = |field: &Field| field.params.mould > 0.0 && field.params.iterations > 0;
     if !prepared.fields.iter().any(is_moulded) {
         return true;
     }
@@ -154,7 +159,7 @@ impl Skin {
             before.extend(points);
             corners.extend(is_corner);
         }
-        let moves = moving.gives_way && field.params.mould > 0.0 && field.params.iterations > 0;
+        let moves = moving.gives_way && is_moulded(field);
         let ties = (moves && !before.is_empty()).then(|| Ties::new(&before, radius, step));
         let pushes = vec![Vec2::ZERO; before.len()];
         let now = before.clone();
