@@ -52,7 +52,7 @@ pub struct Raster {
 /// Errors: a container that cannot be read; there is nothing to measure in.
 pub fn measure(scene: &Scene, artwork: &Artwork) -> Result<BTreeMap<String, f64>, Error> {
     let (_, raster) = raster_of(scene, artwork, CELLS)?;
-    let finer = (FINE * raster.cell / raster.half_width().max(f64::MIN_POSITIVE)).powi(2);
+    let finer = (FINE * raster.cell / half_width(&raster.gaps().0).max(f64::MIN_POSITIVE)).powi(2);
     let cells = (finer * CELLS).clamp(CELLS, MOST_CELLS);
     Ok(if cells > CELLS { raster_of(scene, artwork, cells)?.1.measure() } else { raster.measure() })
 }
@@ -246,19 +246,13 @@ impl Raster {
         (0..covered.len()).map(more).sum::<f64>() / (inside as f64).max(1.0)
     }
 
-    /// Twice the mean distance in gaps.
-    fn half_width(&self) -> f64 {
-        let distances = self.gaps().0;
-        2.0 * distances.iter().sum::<f64>() / (distances.len() as f64).max(1.0)
-    }
-
     /// The measures.
     pub fn measure(&self) -> BTreeMap<String, f64> {
         let inside = self.inside.iter().filter(|&&inside| inside).count() as f64;
         let (distances, middles) = self.gaps();
         let mean = |values: &[f64]| values.iter().sum::<f64>() / (values.len() as f64).max(1.0);
         let empty = distances.len() as f64 / inside.max(1.0);
-        let half_width = 2.0 * mean(&distances);
+        let half_width = half_width(&distances);
         let largest = distances.iter().copied().fold(0.0, f64::max);
         let middle = mean(&middles);
         let spread = mean(&middles.iter().map(|d| (d - middle) * (d - middle)).collect::<Vec<_>>()).sqrt();
@@ -275,6 +269,11 @@ impl Raster {
             ("evenness".to_owned(), evenness(&distances, half_width, largest)),
         ])
     }
+}
+
+/// Twice the mean distance in gaps.
+fn half_width(distances: &[f64]) -> f64 {
+    2.0 * distances.iter().sum::<f64>() / (distances.len() as f64).max(1.0)
 }
 
 /// 1 less the area between SCP and the line of channels of one width, over that line's area.

@@ -1,6 +1,12 @@
 //! Polylines by arc length.
 
-use kurbo::{Point, Vec2};
+use kurbo::{Point, Rect, Vec2};
+
+/// The box around points; `None` if there are none.
+pub fn bounds(mut points: impl Iterator<Item = Point>) -> Option<Rect> {
+    let first = points.next()?;
+    Some(points.fold(Rect::from_points(first, first), |bounds, p| bounds.union_pt(p)))
+}
 
 /// Length of an open polyline.
 pub fn length(points: &[Point]) -> f64 {

@@ -2,6 +2,7 @@
 
 use crate::geom::boolean::{self, Contour};
 use crate::geom::near::SegmentGrid;
+use crate::geom::polyline;
 use kurbo::{Point, Rect, Vec2};
 
 /// An area bounded by simple contours: outer ones and holes.
@@ -77,6 +78,16 @@ impl Region {
     /// Distance to the boundary, `reach` at most.
     pub fn distance(&self, p: Point, reach: f64) -> f64 {
         self.edges.distance(p, reach)
+    }
+
+    /// True if the circle around all of these points, and `margin` around it, lies inside: a quick test, which
+    /// may say no where the points themselves are deep enough.
+    pub fn holds_circle(&self, points: impl Iterator<Item = Point> + Clone, margin: f64) -> bool {
+        let Some(middle) = polyline::bounds(points.clone()).map(|bounds| bounds.center()) else {
+            return true;
+        };
+        let radius = points.map(|p| p.distance(middle)).fold(0.0, f64::max) + margin;
+        self.contains(middle) && self.distance(middle, radius) >= radius
     }
 
     /// How far a ray runs before it meets the boundary, `reach` at most.

@@ -1,7 +1,8 @@
 //! Smooth warps of the plane near an outline.
 
 use crate::geom::near::PointTable;
-use kurbo::{Point, Rect, Vec2};
+use crate::geom::polyline::bounds;
+use kurbo::{Point, Vec2};
 
 /// Moves a closed outline by pushes given at samples of it, and what lies beside it along with it: at any place
 /// the mean of the pushes near by, weighted by distance, fading to nothing at the radius. Twice
@@ -29,12 +30,16 @@ fn fade(radius: f64, step: f64) -> f64 {
     FADE * 32.0 / 35.0 * radius / step
 }
 
+/// Samples with their numbers.
+fn table(samples: &[Point], radius: f64) -> PointTable {
+    let numbered: Vec<(Point, u32)> = samples.iter().zip(0..).map(|(&p, i)| (p, i)).collect();
+    PointTable::new(bounds(samples.iter().copied()).unwrap_or_default(), radius, &numbered)
+}
+
 impl Warp {
     /// Pushes at samples of an outline that are about `step` apart.
     pub fn new(samples: &[Point], pushes: Vec<Vec2>, radius: f64, step: f64) -> Self {
-        let bounds = samples.iter().fold(Rect::from_points(samples[0], samples[0]), |b, &p| b.union_pt(p));
-        let numbered: Vec<(Point, u32)> = samples.iter().zip(0..).map(|(&p, i)| (p, i)).collect();
-        Warp { samples: PointTable::new(bounds, radius, &numbered), pushes, radius, fade: fade(radius, step) }
+        Warp { samples: table(samples, radius), pushes, radius, fade: fade(radius, step) }
     }
 
     /// The same with pushes that are shorter.
@@ -95,9 +100,7 @@ pub struct Ties {
 impl Ties {
     /// Between samples that are about `step` apart.
     pub fn new(samples: &[Point], radius: f64, step: f64) -> Self {
-        let bounds = samples.iter().fold(Rect::from_points(samples[0], samples[0]), |b, &p| b.union_pt(p));
-        let numbered: Vec<(Point, u32)> = samples.iter().zip(0..).map(|(&p, i)| (p, i)).collect();
-        let table = PointTable::new(bounds, radius, &numbered);
+        let table = table(samples, radius);
         let near = samples.iter().map(|&p| {
             let weights =
                 table.near(p, radius).map(|(q, i)| (i, weight((p - q).hypot2() / (radius * radius))));

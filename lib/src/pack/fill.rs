@@ -120,6 +120,7 @@ pub(super) fn fill(
         );
         all.push((index, Gaps::new(field, region, &covered, sizes)));
     }
+    // Strokes take a part of the gaps that outlines leave.
     let mean = if room.nooks { mean_gap(&all, prepared) - 0.3 * placement.widest_stroke() } else { 0.0 };
     for (done, (index, gaps)) in all.into_iter().enumerate() {
         let field = &prepared.fields[index];

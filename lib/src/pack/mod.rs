@@ -41,6 +41,7 @@ mod params;
 mod place;
 mod prepare;
 mod refine;
+mod settle;
 mod shift;
 mod template;
 mod thread;

@@ -9,21 +9,19 @@
 //! (`geom::warp`).
 //!
 //! All pieces move at once, each within its share, so that neither their order nor the number of threads
-//! matters. What comes of it is checked exactly, outline by outline, as in `place`; a piece that fails moves
-//! half as far, or stays as it was.
+//! matters. What comes of it is checked exactly, outline by outline, as in `place`; pieces that
+//! come too near move less far, or stay as they were (`settle`).
 
 use super::fill::Filler;
 use super::params::Sizes;
-use super::place::{FINER, Placement, bent, is_inside, sides, silhouette};
+use super::place::Placement;
 use super::prepare::{Field, Prepared};
+use super::settle;
 use super::template::Template;
-use crate::geom::bend::{Bend, warped};
-use crate::geom::boolean::{Contour, area, signed_area};
-use crate::geom::crossing::self_crossings;
-use crate::geom::flatten::flatten;
-use crate::geom::near::{PointTable, SegmentGrid, segment_segment};
+use crate::geom::boolean::{Contour, signed_area};
+use crate::geom::near::PointTable;
 use crate::geom::warp::{Ties, Warp};
-use kurbo::{ParamCurve, Point, Rect, Vec2};
+use kurbo::{Point, Vec2};
 use rayon::prelude::*;
 
 /// One go at moulding. Lengths in spacings.
@@ -45,14 +43,14 @@ const fn stage(radius: f64, most: f64, iterations: usize) -> Stage {
     Stage { radius, most, iterations }
 }
 
-/// How near the samples of other pieces lie, in spacings.
-const OTHERS: f64 = 0.025;
 /// Where gaps are to become shapes themselves, they stay as wide as they are.
 fn is_moulded(field: &Field) -> bool {
     let params = &field.params;
     params.mould > 0.0 && params.iterations > 0 && !params.has_shapes()
 }
 
+/// How near the samples of other pieces lie, in spacings.
+const OTHERS: f64 = 0.025;
 /// The farthest push in one iteration, in spacings, and as a share of the farthest of all.
 const STEP: (f64, f64) = (0.03, 0.5);
 /// A sample that may move no farther than this, in spacings, will not: what is beside it only grows.
@@ -70,7 +68,7 @@ pub(super) fn mould(
     if !prepared.fields.iter().any(is_moulded) {
         return true;
     }
-    let pieces = Pieces { prepared, strokes: placement.strokes(), elements: placement.placed.len() };
+    let pieces = Pieces::new(prepared, placement);
     // Between stages, outlines are moved corner by corner; only what comes of all is bent anew and checked.
     let fine = |field: usize, outlines: &[Contour]| {
         let step = CORNERS * prepared.fields[field].sizes.spacing;
@@ -95,7 +93,7 @@ pub(super) fn mould(
         }
         all.par_iter_mut().zip(skins).for_each(|(moving, skin)| moving.go(skin));
     }
-    settle(prepared, templates, placement, fillers, &all);
+    settle::settle(prepared, templates, placement, fillers, &all);
     complete
 }
 
@@ -103,11 +101,12 @@ pub(super) fn mould(
 const CORNERS: f64 = 0.03;
 
 /// A piece on its way.
-struct Moving {
-    field: usize,
+pub(super) struct Moving {
+    pub field: usize,
     gives_way: bool,
     contours: Vec<Contour>,
-    warps: Vec<Warp>,
+    /// In the order of the stages.
+    pub warps: Vec<Warp>,
 }
 
 impl Moving {
@@ -137,7 +136,7 @@ struct Skin {
     pushes: Vec<Vec2>,
     /// Samples that have no room left.
     closed: Vec<bool>,
-    /// Empty for what does not give way.
+    /// None for what does not give way.
     ties: Option<Ties>,
     radius: f64,
     step: f64,
@@ -203,24 +202,30 @@ struct Allowances {
 }
 
 /// What pieces keep between them. Fillers are numbered after elements.
-struct Pieces<'a> {
-    prepared: &'a Prepared,
-    strokes: &'a [f64],
-    elements: usize,
+pub(super) struct Pieces<'a> {
+    pub prepared: &'a Prepared,
+    /// Half stroke widths, and the widest.
+    pub strokes: &'a [f64],
+    widest: f64,
+    pub elements: usize,
 }
 
-impl Pieces<'_> {
+impl<'a> Pieces<'a> {
+    pub fn new(prepared: &'a Prepared, placement: &'a Placement) -> Self {
+        let (strokes, widest) = (placement.strokes(), placement.widest_stroke());
+        Pieces { prepared, strokes, widest, elements: placement.placed.len() }
+    }
+
     /// The gap between the outlines of two pieces.
-    fn gap(&self, sizes: &Sizes, one: usize, other: usize) -> f64 {
+    pub fn gap(&self, sizes: &Sizes, one: usize, other: usize) -> f64 {
         let both_elements = one < self.elements && other < self.elements;
         let gap = if both_elements { sizes.gap } else { sizes.filler_gap };
         sizes.safe(gap) + self.strokes[one] + self.strokes[other]
     }
 
     /// The most that [`Pieces::gap`] can be for a piece.
-    fn widest_gap(&self, sizes: &Sizes, one: usize) -> f64 {
-        let widest = self.strokes.iter().copied().fold(0.0, f64::max);
-        sizes.safe(sizes.gap.max(sizes.filler_gap)) + self.strokes[one] + widest
+    pub fn widest_gap(&self, sizes: &Sizes, one: usize) -> f64 {
+        sizes.safe(sizes.gap.max(sizes.filler_gap)) + self.strokes[one] + self.widest
     }
 
     /// One iteration.
@@ -270,7 +275,7 @@ impl Pieces<'_> {
         let beside = (skin.step.max(OTHERS * sizes.spacing) / 2.0).powi(2);
         let reach = self.widest_gap(sizes, own) + 2.0 * limit + skin.step;
         let margin = self.strokes[own] + sizes.tolerance();
-        let near_edge = is_near_edge(&skin.now, limit + margin, field);
+        let near_edge = !field.region.holds_circle(skin.now.iter().copied(), limit + margin);
         // A sample with no room left holds those near it; who has none but such beside it need not ask.
         let held = |i: usize| ties.any(&skin.closed, i);
         let free: Vec<bool> = (0..skin.now.len()).map(|i| !held(i)).collect();
@@ -307,172 +312,6 @@ impl Pieces<'_> {
         }
         allowed
     }
-}
-
-/// True if any of these points may lie within `reach` of the region's edge.
-fn is_near_edge(points: &[Point], reach: f64, field: &Field) -> bool {
-    let middle = bounds(points).center();
-    let radius = points.iter().map(|p| p.distance(middle)).fold(0.0, f64::max) + reach;
-    !field.region.contains(middle) || field.region.distance(middle, radius) < radius
-}
-
-/// A piece as it is moulded.
-struct Moulded {
-    warps: Vec<Warp>,
-    outlines: Vec<Contour>,
-}
-
-/// How far pieces go, in shares of their pushes, if they do not go farther.
-const SHARES: [f64; 3] = [1.0, 0.6, 0.3];
-
-/// Moulds all pieces as far as they keep apart: two that do not both go less far, until all do. In the end
-/// they may stay as they were.
-fn settle(
-    prepared: &Prepared,
-    templates: &[Template],
-    placement: &mut Placement,
-    fillers: &mut [Filler],
-    all: &[Moving],
-) {
-    let elements = placement.placed.len();
-    let spacing = prepared.fields.iter().map(|field| field.sizes.spacing).fold(f64::INFINITY, f64::min);
-    let moulded = |i: usize, share: f64| {
-        let sizes = &prepared.fields[all[i].field].sizes;
-        let warps = all[i].warps.iter().map(|warp| warp.scaled(share));
-        match placement.placed.get(i) {
-            Some(placed) => {
-                let mut bend = placed.bend.clone();
-                bend.warps.extend(warps);
-                of_element(&templates[placed.template], placed.pose, bend, sizes)
-            }
-            None => of_filler(&fillers[i - elements], warps.collect(), sizes),
-        }
-    };
-    let before = |i: usize| match placement.placed.get(i) {
-        Some(placed) => &placed.outlines,
-        None => &fillers[i - elements].outlines,
-    };
-    let pieces = Pieces { prepared, strokes: placement.strokes(), elements };
-    // Which share each piece has reached; beyond the last it stays.
-    let mut level: Vec<usize> =
-        all.iter().map(|moving| if moving.warps.is_empty() { SHARES.len() } else { 0 }).collect();
-    let mut settled: Vec<Option<Moulded>> = all.iter().map(|_| None).collect();
-    let mut changed: Vec<usize> = (0..all.len()).filter(|&i| level[i] < SHARES.len()).collect();
-    let mut outlines;
-    loop {
-        let again: Vec<(usize, Option<Moulded>)> = changed
-            .par_iter()
-            .map(|&i| {
-                let shares = SHARES.iter().enumerate().skip(level[i]);
-                let mut first = shares.filter_map(|(k, &share)| Some((k, moulded(i, share)?)));
-                first.next().map_or((SHARES.len(), None), |(k, moulded)| (k, Some(moulded)))
-            })
-            .collect();
-        for (&i, again) in changed.iter().zip(again) {
-            (level[i], settled[i]) = again;
-        }
-        outlines = SegmentGrid::new(prepared.bounds, spacing / 6.0);
-        for (i, moulded) in settled.iter().enumerate() {
-            let contours = moulded.as_ref().map_or(before(i), |moulded| &moulded.outlines);
-            contours.iter().for_each(|contour| outlines.insert_contour(contour, i as u32));
-        }
-        let blamed = |&i: &usize| {
-            let contours = settled[i].as_ref().map_or(before(i), |moulded| &moulded.outlines);
-            pieces.too_near(i, all[i].field, contours, &outlines)
-        };
-        let mut lowered: Vec<usize> = changed.par_iter().flat_map_iter(blamed).collect();
-        lowered.retain(|&i| level[i] < SHARES.len());
-        lowered.sort_unstable();
-        lowered.dedup();
-        if lowered.is_empty() {
-            break;
-        }
-        lowered.iter().for_each(|&i| level[i] += 1);
-        changed = lowered;
-    }
-    for (i, moulded) in settled.into_iter().enumerate() {
-        let Some(Moulded { warps, outlines }) = moulded else { continue };
-        if i < elements {
-            let placed = &mut placement.placed[i];
-            placed.silhouette = silhouette(&outlines);
-            placed.area = area(&placed.silhouette);
-            (placed.bend.warps, placed.outlines) = (warps, outlines);
-        } else {
-            let filler = &mut fillers[i - elements];
-            filler.area = area(&outlines);
-            (filler.warps, filler.outlines) = (warps, outlines);
-        }
-    }
-    placement.replace_outlines(outlines);
-}
-
-/// Chords of moulded outlines are this much nearer to the truth, and the gaps that are checked this many
-/// tolerances narrower: before, pieces may have kept the gap to a hair.
-const CLOSER: f64 = 0.5;
-const NARROWER: f64 = 0.5;
-
-/// An element with its new outlines. `None` if it is turned over somewhere.
-fn of_element(template: &Template, pose: super::choose::Pose, bend: Bend, sizes: &Sizes) -> Option<Moulded> {
-    let places = template.parts.iter().flat_map(|(path, _)| path.segments()).flat_map(|segment| {
-        // Enough to see a fold, which is as wide as a push is felt.
-        (0..4).map(move |k| segment.eval(f64::from(k) / 4.0))
-    });
-    let posed =
-        |p: Point| Point::new(if pose.along { 1.0 - p.x } else { p.x }, if pose.across { -p.y } else { p.y });
-    if !bend.keeps_sense(places.map(posed)) {
-        return None;
-    }
-    let paths = bent(&template.outer, pose, &bend, FINER * sizes.tolerance());
-    let outlines: Vec<Contour> = paths
-        .iter()
-        .flat_map(|path| flatten(path, CLOSER * sizes.tolerance()))
-        .map(|subpath| subpath.points)
-        .collect();
-    let is_simple =
-        template.crosses_itself || outlines.iter().all(|outline| self_crossings(outline, 1).is_empty());
-    is_simple.then_some(Moulded { warps: bend.warps, outlines })
-}
-
-/// A pebble with its new outline.
-fn of_filler(filler: &Filler, warps: Vec<Warp>, sizes: &Sizes) -> Option<Moulded> {
-    let warps: Vec<Warp> = filler.warps.iter().cloned().chain(warps).collect();
-    let path = warped(&filler.plain(), &warps, FINER * sizes.tolerance());
-    let outlines: Vec<Contour> =
-        flatten(&path, CLOSER * sizes.tolerance()).into_iter().map(|subpath| subpath.points).collect();
-    let is_simple = outlines.iter().all(|outline| self_crossings(outline, 1).is_empty());
-    is_simple.then_some(Moulded { warps, outlines })
-}
-
-impl Pieces<'_> {
-    /// The pieces that are nearer than their gap to a piece with these outlines, and that piece itself if
-    /// there are any, or if it leaves its region.
-    fn too_near(&self, own: usize, field: usize, contours: &[Contour], all: &SegmentGrid) -> Vec<usize> {
-        let field = &self.prepared.fields[field];
-        let sizes = &field.sizes;
-        let margin = self.strokes[own] + (sizes.tolerance() - sizes.edge).max(0.0);
-        let narrower = NARROWER * sizes.tolerance();
-        let widest = self.widest_gap(sizes, own);
-        let mut blamed = Vec::new();
-        if !contours.iter().all(|contour| is_inside(contour, margin, &field.region)) {
-            blamed.push(own);
-        }
-        for (p, q) in contours.iter().flat_map(sides) {
-            all.visit(p, q, widest, |a, b, other| {
-                let other = other as usize;
-                let is_known = other == own || blamed.last() == Some(&other);
-                if !is_known && segment_segment(p, q, a, b) < self.gap(sizes, own, other) - narrower {
-                    blamed.extend([own, other]);
-                }
-                true
-            });
-        }
-        blamed
-    }
-}
-
-fn bounds(points: &[Point]) -> Rect {
-    let Some(&first) = points.first() else { return Rect::ZERO };
-    points.iter().fold(Rect::from_points(first, first), |bounds, &p| bounds.union_pt(p))
 }
 
 /// A contour with more corners: none farther from the next than `step`.

@@ -262,9 +262,7 @@ fn candidate(body: &Body, (width, cut): (f64, f64), template: &Template, field: 
 
 /// True if an outline lies in the region, `margin` from its edge.
 pub(super) fn is_inside(outline: &Contour, margin: f64, region: &Region) -> bool {
-    let centre = centre(std::slice::from_ref(outline));
-    let radius = outline.iter().map(|p| p.distance(centre)).fold(0.0, f64::max) + margin;
-    if region.contains(centre) && region.distance(centre, radius) >= radius {
+    if region.holds_circle(outline.iter().copied(), margin) {
         return true;
     }
     // One corner inside and no side across the edge: all of it is inside.

@@ -231,7 +231,8 @@ fn moved(
     // g_limit = 0.005 input_size (4.6), and never more than a step of the line spacing.
     let limit = (0.005 * input_size).min(0.12 * field.sizes.spacing);
     let on_boundary = body.blob.kind == LineKind::Boundary;
-    let near_edge = is_near_edge(body, field, neighbourhood.reach);
+    let outline = body.shape.sides.iter().flatten().chain(&body.shape.tips).copied();
+    let near_edge = !field.region.holds_circle(outline, neighbourhood.reach);
     let allowance = |at: Point| neighbourhood.allowance(index, at, field, near_edge).min(limit);
     let mut room = [0, 1].map(|side| {
         if on_boundary && side == 1 {
@@ -265,14 +266,6 @@ fn moved(
         }
     }
     Blob { length: polyline::length(&points), points, room, ..body.blob }
-}
-
-/// True if any part of a body may come within `reach` of the region's edge.
-fn is_near_edge(body: &Body, field: &Field, reach: f64) -> bool {
-    let middle = body.shape.tips[0].midpoint(body.shape.tips[1]);
-    let outline = body.shape.sides.iter().flatten().chain(&body.shape.tips);
-    let radius = outline.map(|p| p.distance(middle)).fold(0.0, f64::max) + reach;
-    !field.region.contains(middle) || field.region.distance(middle, radius) < radius
 }
 
 /// Lengthens (or shortens) a line at its end 0 or 1.
