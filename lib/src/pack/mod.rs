@@ -12,7 +12,7 @@
 //! 6. Refine the composition: shift, extend and grow (4.6), with small elements in the gaps that show
 //!    (6): `refine`, `insert`.
 //! 7. Mould outlines into the gaps, and fill those that are left (6), or draw their own shapes (5): `mould`,
-//!    `fill`, `negative`.
+//!    `settle`, `fill`, `negative`.
 //! 8. Draw it, worn, rounded or as one piece if that is asked for (5): `artwork`, `finish`, `connect`.
 //!
 //! Departures are argued where they happen: lines on the boundary (`lines`), lines cut into
