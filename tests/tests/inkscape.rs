@@ -428,26 +428,35 @@ fn a_dialog_is_filled_in_and_applied() {
     // The width is the first control of the first page, at the right.
     let script = r#"
         inkscape --with-gui --actions="select-by-id:leaf;org.rinceau.pack" "$1" & inkscape=$!
-        for i in $(seq 80); do
+        for i in $(seq 160); do
             sleep 0.5
             dialog=$(xdotool search --onlyvisible --name '^Pack along flow$' 2>/dev/null | tail -n 1)
             [ -n "$dialog" ] && break
         done
         sleep 1
-        xdotool windowfocus --sync "$dialog"
         eval "$(xdotool getwindowgeometry --shell "$dialog")"
-        xdotool mousemove --window "$dialog" $((WIDTH - 104)) 76 click --repeat 3 1 sleep 0.3 type 30
-        xdotool key Tab sleep 0.3 key alt+a
-        sleep 4
-        xdotool key Escape sleep 1
-        main=$(xdotool search --onlyvisible --name 'Inkscape$' | tail -n 1)
-        xdotool windowfocus --sync "$main" key ctrl+s sleep 2 key ctrl+q
+        # A busy machine is slow: a run has ended once it is told of.
+        told="$INKSCAPE_PROFILE_DIR/extensions/rinceau/bin/last-run.json"
+        for try in $(seq 3); do
+            xdotool windowfocus --sync "$dialog"
+            xdotool mousemove --window "$dialog" $((WIDTH - 104)) 76 click --repeat 3 1 sleep 0.3 type 30
+            xdotool key Tab sleep 0.3 key alt+a
+            for i in $(seq 100); do [ -e "$told" ] && break 2; sleep 0.3; done
+        done
+        sleep 2
+        xdotool windowfocus --sync "$dialog" key Escape sleep 1
+        main=$(xdotool search --onlyvisible --name ' - Inkscape$' | tail -n 1)
+        for try in $(seq 10); do
+            xdotool windowfocus --sync "$main" key ctrl+s sleep 2
+            grep -q 'rinceau:result' "$1" && break
+        done
+        xdotool key ctrl+q
         for i in $(seq 20); do sleep 0.5; kill -0 $inkscape 2>/dev/null || exit 0; done
         kill $inkscape"#;
     let mut session = Command::new("xvfb-run");
     session.args(["-a", "-s", "-screen 0 1280x1000x24", "bash", "-c", script, "bash"]).arg(&input);
     user.at_home(&mut session);
-    let done = Run::of(session).limit(Duration::from_secs(90)).done();
+    let done = Run::of(session).limit(Duration::from_secs(240)).done();
     let after = std::fs::read_to_string(&input).unwrap();
     let xml = parse(&after);
     let [layer] = layers(&xml)[..] else { panic!("{} layers: {done:?}", layers(&xml).len()) };
