@@ -63,6 +63,10 @@ impl Bend {
     }
 
     fn map(&self, at: Point) -> Mapped {
+        self.unwarped(at).warped(&self.warps)
+    }
+
+    fn unwarped(&self, at: Point) -> Mapped {
         let (u, v) = (at.x, at.y);
         let jet = self.spine.jet(u);
         let speed = jet.d.hypot().max(f64::MIN_POSITIVE);
@@ -89,14 +93,13 @@ impl Bend {
             du: jet.d + (q3 * w_du - k * w * w * w * q3 * k_du) * normal + pulled * normal_du,
             dv: q3 * w_dv * normal,
         }
-        .warped(&self.warps)
     }
 
     /// Bends a path in (u, v). Curves stay Béziers: each is split until a cubic with the
     /// mapped ends and end derivatives lies within `tolerance` of the mapped curve, so joins
     /// that were smooth stay smooth. Appends to `out`.
     pub fn path(&self, path: &BezPath, tolerance: f64, out: &mut BezPath) {
-        map_path(path, |at| self.map(at), &self.warps, tolerance, out);
+        map_path(path, |at| self.unwarped(at), &self.warps, tolerance, out);
     }
 
     /// True if the map turns nothing over at any of these places in (u, v). It never does without warps.
@@ -110,7 +113,7 @@ impl Bend {
 
 /// A path that only warps move.
 pub fn warped(path: &BezPath, warps: &[Warp], tolerance: f64) -> BezPath {
-    let map = |at| Mapped { p: at, du: Vec2::new(1.0, 0.0), dv: Vec2::new(0.0, 1.0) }.warped(warps);
+    let map = |at| Mapped { p: at, du: Vec2::new(1.0, 0.0), dv: Vec2::new(0.0, 1.0) };
     let mut out = BezPath::new();
     map_path(path, map, warps, tolerance, &mut out);
     out
@@ -125,7 +128,7 @@ impl Mapped {
     }
 }
 
-/// Maps a path; `map` has these warps in it.
+/// Maps a path, and warps it.
 fn map_path(
     path: &BezPath,
     map: impl Fn(Point) -> Mapped,
@@ -135,12 +138,14 @@ fn map_path(
 ) {
     let mut start = Point::ZERO;
     let mut at = Point::ZERO;
-    let curve = |cubic: CubicBez, out: &mut BezPath| map_curve(cubic, &map, warps, tolerance, out);
+    let place = |at: Point| warps.iter().fold(map(at).p, |p, warp| warp.point(p));
+    let curve =
+        |cubic: CubicBez, out: &mut BezPath| map_curve(cubic, (&map, &place), warps, tolerance, out);
     for el in path.elements() {
         match *el {
             PathEl::MoveTo(p) => {
                 (start, at) = (p, p);
-                out.move_to(map(p).p);
+                out.move_to(place(p));
             }
             PathEl::LineTo(p) => {
                 curve(PathSeg::Line(kurbo::Line::new(at, p)).to_cubic(), out);
@@ -167,7 +172,7 @@ fn map_path(
 
 fn map_curve(
     source: CubicBez,
-    map: &impl Fn(Point) -> Mapped,
+    (map, place): (&impl Fn(Point) -> Mapped, &impl Fn(Point) -> Point),
     warps: &[Warp],
     tolerance: f64,
     out: &mut BezPath,
@@ -175,16 +180,19 @@ fn map_curve(
     let deriv = source.deriv();
     let end = |t: f64| {
         let (at, d) = (source.eval(t), deriv.eval(t));
-        let mapped = map(at);
+        let mapped = map(at).warped(warps);
         (mapped.p, d.x * mapped.du + d.y * mapped.dv)
     };
     let mut pieces = vec![(0.0, end(0.0), 1.0, end(1.0), 0)];
     while let Some((t0, e0, t1, e1, halvings)) = pieces.pop() {
         let h = (t1 - t0) / 3.0;
         let cubic = CubicBez::new(e0.0, e0.0 + h * e0.1, e1.0 - h * e1.1, e1.0);
-        let near = |s: f64| map(source.eval(t0 + s * (t1 - t0))).p.distance(cubic.eval(s)) <= tolerance;
+        let near = |s: f64| place(source.eval(t0 + s * (t1 - t0))).distance(cubic.eval(s)) <= tolerance;
         // Nothing that a warp does lies unseen within a piece.
-        let is_short = || warps.iter().all(|warp| cubic.p0.distance(cubic.p3) < 1.5 * warp.radius());
+        let is_short = || {
+            let (middle, length) = (cubic.p0.midpoint(cubic.p3), cubic.p0.distance(cubic.p3));
+            warps.iter().all(|warp| length < 1.5 * warp.radius() || !warp.reaches(middle, length / 2.0))
+        };
         if halvings == MOST_HALVINGS || (is_short() && near(0.5) && near(0.2) && near(0.8)) {
             out.curve_to(cubic.p1, cubic.p2, cubic.p3);
         } else {

@@ -213,42 +213,62 @@ impl SegmentGrid {
 
     /// Distance to the nearest segment, or `reach` if none is nearer.
     pub fn distance(&self, at: Point, reach: f64) -> f64 {
+        self.nearest(at, reach, |_| 0.0, 0.0).0
+    }
+
+    /// Distance to the nearest stroke along a segment, `reach` if none is nearer, and that segment: half stroke
+    /// widths by owner, and the `widest` of them. Negative in a stroke.
+    pub fn nearest_stroke(
+        &self,
+        at: Point,
+        reach: f64,
+        (strokes, widest): (&[f64], f64),
+    ) -> (f64, Option<(Point, Point, u32)>) {
+        if widest == 0.0 {
+            return self.nearest(at, reach, |_| 0.0, 0.0);
+        }
+        self.nearest(at, reach, |owner| strokes[owner as usize], widest)
+    }
+
+    /// The segment that is nearest where each is wider by half a stroke, `widest` at most.
+    fn nearest(
+        &self,
+        at: Point,
+        reach: f64,
+        stroke: impl Fn(u32) -> f64,
+        widest: f64,
+    ) -> (f64, Option<(Point, Point, u32)>) {
         let (column, row) = (self.cells.column(at.x) as i64, self.cells.row(at.y) as i64);
         let all = self.cells.columns.max(self.cells.rows) as i64;
-        let rings = ((reach / self.cells.size).min(1e9) as i64 + 1).min(all);
-        let mut best = reach * reach;
+        let rings = (((reach + widest) / self.cells.size).min(1e9) as i64 + 1).min(all);
+        let (mut best, mut found) = (reach, None);
+        // No segment beyond this is any nearer.
+        let mut squared = (best + widest).powi(2);
         for ring in 0..=rings {
             // What lies in this ring of cells is at least this far away, also from a place
             // outside the grid, whose ring is that of the border cell next to it.
             let nearest = (ring - 1) as f64 * self.cells.size;
-            if ring > 1 && nearest * nearest >= best {
+            if ring > 1 && nearest * nearest >= squared {
                 break;
             }
             self.cells.ring(column, row, ring, |index| {
                 let content = &self.content[index];
-                if content.is_empty() || self.cells.distance_squared(at, index) >= best {
+                if content.is_empty() || self.cells.distance_squared(at, index) >= squared {
                     return;
                 }
-                for &(p, q, _) in content {
-                    best = best.min(point_segment_squared(at, p, q));
+                for &(p, q, owner) in content {
+                    let apart = point_segment_squared(at, p, q);
+                    if apart < squared {
+                        let distance = apart.sqrt() - stroke(owner);
+                        if distance < best {
+                            (best, found) = (distance, Some((p, q, owner)));
+                            squared = (best + widest).powi(2);
+                        }
+                    }
                 }
             });
         }
-        best.sqrt()
-    }
-
-    /// Distance to the nearest stroke along a segment, `reach` if none is nearer: half stroke widths by owner, and
-    /// the `widest` of them. Negative in a stroke.
-    pub fn distance_to_strokes(&self, at: Point, reach: f64, (strokes, widest): (&[f64], f64)) -> f64 {
-        if widest == 0.0 {
-            return self.distance(at, reach);
-        }
-        let mut best = reach;
-        self.visit(at, at, reach + widest, |p, q, owner| {
-            best = best.min(point_segment(at, p, q) - strokes[owner as usize]);
-            true
-        });
-        best
+        (best, found)
     }
 
     /// How far a ray from `at` along the unit vector `along` runs before it meets a segment,

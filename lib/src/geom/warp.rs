@@ -3,14 +3,18 @@
 use crate::geom::near::PointTable;
 use crate::geom::polyline::bounds;
 use kurbo::{Point, Vec2};
+use std::sync::Arc;
 
 /// Moves a closed outline by pushes given at samples of it, and what lies beside it along with it: at any place
 /// the mean of the pushes near by, weighted by distance, fading to nothing at the radius. Twice
 /// continuously differentiable, so that smooth outlines stay smooth.
 #[derive(Clone, Debug)]
 pub struct Warp {
-    samples: PointTable,
-    pushes: Vec<Vec2>,
+    /// The samples that are felt where any push is.
+    samples: Arc<PointTable>,
+    pushes: Arc<[Vec2]>,
+    /// How much of the pushes is done.
+    share: f64,
     radius: f64,
     fade: f64,
 }
@@ -30,21 +34,39 @@ fn fade(radius: f64, step: f64) -> f64 {
     FADE * 32.0 / 35.0 * radius / step
 }
 
-/// Samples with their numbers.
-fn table(samples: &[Point], radius: f64) -> PointTable {
-    let numbered: Vec<(Point, u32)> = samples.iter().zip(0..).map(|(&p, i)| (p, i)).collect();
-    PointTable::new(bounds(samples.iter().copied()).unwrap_or_default(), radius, &numbered)
+/// Samples with their numbers, some of them.
+fn table(samples: &[Point], size: f64, is_in: impl Fn(usize) -> bool) -> PointTable {
+    let numbered: Vec<(Point, u32)> =
+        samples.iter().zip(0..).filter(|&(_, i)| is_in(i as usize)).map(|(&p, i)| (p, i)).collect();
+    PointTable::new(bounds(numbered.iter().map(|(p, _)| *p)).unwrap_or_default(), size, &numbered)
 }
 
 impl Warp {
     /// Pushes at samples of an outline that are about `step` apart.
     pub fn new(samples: &[Point], pushes: Vec<Vec2>, radius: f64, step: f64) -> Self {
-        Warp { samples: table(samples, radius), pushes, radius, fade: fade(radius, step) }
+        // What lies farther than twice the radius from any push weighs nothing where one is felt.
+        let pushed = table(samples, 2.0 * radius, |i| pushes[i] != Vec2::ZERO);
+        let is_near = |i: usize| {
+            let at = samples[i];
+            pushes[i] != Vec2::ZERO
+                || pushed.near(at, 2.0 * radius).any(|(p, _)| p.distance_squared(at) < 4.0 * radius * radius)
+        };
+        let samples = Arc::new(table(samples, radius, is_near));
+        Warp { samples, pushes: pushes.into(), share: 1.0, radius, fade: fade(radius, step) }
     }
 
     /// The same with pushes that are shorter.
     pub fn scaled(&self, share: f64) -> Self {
-        Warp { pushes: self.pushes.iter().map(|&push| share * push).collect(), ..self.clone() }
+        Warp { share: share * self.share, ..self.clone() }
+    }
+
+    /// True if a push may be felt within `distance` of a place.
+    pub fn reaches(&self, p: Point, distance: f64) -> bool {
+        let reach = self.radius + distance;
+        let is_felt = |(sample, i): (Point, u32)| {
+            self.pushes[i as usize] != Vec2::ZERO && (sample - p).hypot2() < reach * reach
+        };
+        self.samples.near(p, reach).any(is_felt)
     }
 
     /// How far a push is felt.
@@ -55,76 +77,102 @@ impl Warp {
     /// Where a point goes.
     pub fn point(&self, p: Point) -> Point {
         let (mut sum, mut total) = (Vec2::ZERO, self.fade);
-        for (sample, i) in self.samples.near(p, self.radius) {
-            let w = weight((p - sample).hypot2() / (self.radius * self.radius));
-            sum += w * self.pushes[i as usize];
-            total += w;
-        }
-        p + sum / total
+        let squared_radius = self.radius * self.radius;
+        self.samples.near(p, self.radius).for_each(|(sample, i)| {
+            let squared = (p - sample).hypot2();
+            if squared < squared_radius {
+                let w = weight(squared / squared_radius);
+                sum += w * self.pushes[i as usize];
+                total += w;
+            }
+        });
+        p + self.share * sum / total
     }
 
     /// Where a point goes, and directions at it with it.
     pub fn jet(&self, p: Point, directions: [&mut Vec2; 2]) -> Point {
         let squared_radius = self.radius * self.radius;
         let (mut sum, mut total) = (Vec2::ZERO, self.fade);
-        let (mut sum_by, mut total_by) = ([Vec2::ZERO; 2], [0.0; 2]);
-        for (sample, i) in self.samples.near(p, self.radius) {
+        // How both change with p, by x and y.
+        let (mut sum_by, mut total_by) = ([Vec2::ZERO; 2], Vec2::ZERO);
+        self.samples.near(p, self.radius).for_each(|(sample, i)| {
             let from = p - sample;
             let rest = 1.0 - from.hypot2() / squared_radius;
-            if rest <= 0.0 {
-                continue;
+            if rest > 0.0 {
+                let push = self.pushes[i as usize];
+                let w = rest * rest * rest;
+                sum += w * push;
+                total += w;
+                let by = (-6.0 * rest * rest / squared_radius) * from;
+                sum_by[0] += by.x * push;
+                sum_by[1] += by.y * push;
+                total_by += by;
             }
-            let push = self.pushes[i as usize];
-            let w = rest * rest * rest;
-            sum += w * push;
-            total += w;
-            for (k, direction) in directions.iter().enumerate() {
-                let by = -6.0 * rest * rest * from.dot(**direction) / squared_radius;
-                sum_by[k] += by * push;
-                total_by[k] += by;
+        });
+        if sum_by != [Vec2::ZERO; 2] {
+            for direction in directions {
+                let sum_by = direction.x * sum_by[0] + direction.y * sum_by[1];
+                let total_by = total_by.dot(*direction);
+                *direction += self.share * (sum_by / total - sum * (total_by / (total * total)));
             }
         }
-        for (k, direction) in directions.into_iter().enumerate() {
-            *direction += sum_by[k] / total - sum * (total_by[k] / (total * total));
-        }
-        p + sum / total
+        p + self.share * sum / total
     }
 }
 
 /// Which samples of an outline move with each other, and how much: as [`Warp`] moves them.
 pub struct Ties {
+    /// Where each sample's row begins.
+    starts: Vec<u32>,
     /// Samples near each one, itself too, with their weights.
-    near: Vec<Vec<(u32, f64)>>,
+    near: Vec<(u32, f64)>,
 }
 
 impl Ties {
-    /// Between samples that are about `step` apart.
-    pub fn new(samples: &[Point], radius: f64, step: f64) -> Self {
-        let table = table(samples, radius);
-        let near = samples.iter().map(|&p| {
-            let weights =
-                table.near(p, radius).map(|(q, i)| (i, weight((p - q).hypot2() / (radius * radius))));
-            let mut weights: Vec<(u32, f64)> = weights.filter(|(_, w)| *w > 0.0).collect();
-            let total = fade(radius, step) + weights.iter().map(|(_, w)| w).sum::<f64>();
-            weights.iter_mut().for_each(|(_, w)| *w /= total);
-            weights
-        });
-        Ties { near: near.collect() }
+    /// Between samples that are about `step` apart, for those that may be pushed and what is near them.
+    pub fn new(samples: &[Point], is_pushed: &[bool], radius: f64, step: f64) -> Self {
+        let table = table(samples, radius, |_| true);
+        let (squared_radius, fade) = (radius * radius, fade(radius, step));
+        let near = |i: usize| {
+            let p = samples[i];
+            let near = table.near(p, radius).map(move |(q, j)| (j, (p - q).hypot2()));
+            near.filter(move |(_, squared)| *squared < squared_radius)
+        };
+        let mut is_moved = vec![false; samples.len()];
+        for i in (0..samples.len()).filter(|&i| is_pushed[i]) {
+            near(i).for_each(|(j, _)| is_moved[j as usize] = true);
+        }
+        let mut ties = Ties { starts: vec![0], near: Vec::new() };
+        for i in 0..samples.len() {
+            if is_moved[i] {
+                let start = ties.near.len();
+                ties.near.extend(near(i).map(|(j, squared)| (j, weight(squared / squared_radius))));
+                let total = fade + ties.near[start..].iter().map(|(_, w)| w).sum::<f64>();
+                ties.near[start..].iter_mut().for_each(|(_, w)| *w /= total);
+            }
+            ties.starts.push(ties.near.len() as u32);
+        }
+        ties
+    }
+
+    /// Samples near one, with their weights; none if it is not moved.
+    fn row(&self, i: usize) -> &[(u32, f64)] {
+        &self.near[self.starts[i] as usize..self.starts[i + 1] as usize]
     }
 
     /// The least of the values near a sample.
     pub fn least(&self, values: &[f64], i: usize) -> f64 {
-        self.near[i].iter().map(|&(j, _)| values[j as usize]).fold(f64::INFINITY, f64::min)
+        self.row(i).iter().map(|&(j, _)| values[j as usize]).fold(f64::INFINITY, f64::min)
     }
 
     /// True if any of the samples near one is so.
     pub fn any(&self, is_so: &[bool], i: usize) -> bool {
-        self.near[i].iter().any(|&(j, _)| is_so[j as usize])
+        self.row(i).iter().any(|&(j, _)| is_so[j as usize])
     }
 
     /// How far a sample moves.
     pub fn push(&self, pushes: &[Vec2], i: usize) -> Vec2 {
-        self.near[i].iter().fold(Vec2::ZERO, |sum, &(j, w)| sum + w * pushes[j as usize])
+        self.row(i).iter().fold(Vec2::ZERO, |sum, &(j, w)| sum + w * pushes[j as usize])
     }
 }
 
@@ -159,7 +207,7 @@ mod tests {
     #[test]
     fn samples_move_as_their_ties_say() {
         let (samples, pushes) = circle();
-        let (ties, warp) = (Ties::new(&samples, 3.0, 0.7), Warp::new(&samples, pushes.clone(), 3.0, 0.7));
+        let (ties, warp) = (Ties::new(&samples, &[true; 90], 3.0, 0.7), Warp::new(&samples, pushes.clone(), 3.0, 0.7));
         for (i, &p) in samples.iter().enumerate() {
             let moved = warp.point(p) - p;
             assert!((moved - ties.push(&pushes, i)).hypot() < 1e-12);

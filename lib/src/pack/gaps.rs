@@ -3,7 +3,7 @@
 use super::prepare::Field;
 use crate::geom::boolean::Contour;
 use crate::geom::distance::{cover, covered, squared_distances};
-use crate::geom::near::{PointGrid, SegmentGrid};
+use crate::geom::near::{PointGrid, SegmentGrid, point_segment};
 use crate::geom::polyline;
 use crate::geom::region::Region;
 use crate::shapes::closed;
@@ -40,6 +40,16 @@ pub(super) struct Inked<'a> {
     pub strokes: &'a [f64],
     pub widest: f64,
 }
+
+impl Inked<'_> {
+    /// Half the stroke width of an owner. There need be none where nothing is stroked.
+    fn stroke(&self, owner: u32) -> f64 {
+        if self.widest > 0.0 { self.strokes[owner as usize] } else { 0.0 }
+    }
+}
+
+/// A side of an outline, and its owner.
+type Blocker = (Point, Point, u32);
 
 /// What is covered in one container: elements by cells, dots by their circles. A distance to
 /// an outline is the same from inside, so this has to be known beside it.
@@ -166,18 +176,24 @@ impl<'a> Gaps<'a> {
     /// Free radius at a place: to the outlines less the gap, to the boundary in full. Negative
     /// outside and in what is covered.
     pub fn clearance(&self, inked: Inked, at: Point) -> f64 {
+        self.clearance_and_blocker(inked, at).0
+    }
+
+    /// The same, and the segment of an outline that is nearest, if any is near.
+    fn clearance_and_blocker(&self, inked: Inked, at: Point) -> (f64, Option<Blocker>) {
         if self.covers(at) {
-            return -self.reach;
+            return (-self.reach, None);
         }
-        let strokes = (inked.strokes, inked.widest);
-        let to_elements = inked.outlines.distance_to_strokes(at, self.reach, strokes) - self.gap;
+        let (to_elements, blocker) =
+            inked.outlines.nearest_stroke(at, self.reach, (inked.strokes, inked.widest));
+        let free = to_elements - self.gap;
         if self.cell(at).is_some_and(|cell| self.inner[cell]) {
-            return to_elements;
+            return (free, blocker);
         }
         if !self.region.contains(at) {
-            return -self.reach;
+            return (-self.reach, blocker);
         }
-        to_elements.min(self.region.distance(at, self.reach))
+        (free.min(self.region.distance(at, self.reach)), blocker)
     }
 
     /// Climbs to the middle of a gap in so many rounds, and tells the clearance there.
@@ -188,15 +204,30 @@ impl<'a> Gaps<'a> {
             [(0.7, 0.7), (-0.7, -0.7), (0.7, -0.7), (-0.7, 0.7)],
         ];
         let mut step = self.step;
-        let mut best = self.clearance(inked, at);
+        let (mut best, blocker) = self.clearance_and_blocker(inked, at);
+        // What stood in the way before mostly does so again: no need to look for what is nearest.
+        let mut blockers = [blocker, None, None, None];
+        let mut oldest = 1;
+        let blocked = |blockers: &[Option<Blocker>], at: Point, best: f64| {
+            blockers.iter().flatten().any(|&(p, q, owner)| {
+                point_segment(at, p, q) - inked.stroke(owner) - self.gap <= best
+            })
+        };
         for _ in 0..rounds {
             let moved = WAYS.into_iter().any(|ways| {
                 let before = best;
                 for (x, y) in ways {
                     let next = at + step * Vec2::new(x, y);
-                    let free = self.clearance(inked, next);
+                    if blocked(&blockers, next, best) {
+                        continue;
+                    }
+                    let (free, blocker) = self.clearance_and_blocker(inked, next);
                     if free > best {
                         (at, best) = (next, free);
+                    }
+                    if blocker.is_some() {
+                        blockers[oldest] = blocker;
+                        oldest = (oldest + 1) % blockers.len();
                     }
                 }
                 best > before

@@ -54,7 +54,7 @@ const OTHERS: f64 = 0.025;
 /// The farthest push in one iteration, in spacings, and as a share of the farthest of all.
 const STEP: (f64, f64) = (0.03, 0.5);
 /// A sample that may move no farther than this, in spacings, will not: what is beside it only grows.
-const CLOSED: f64 = 1e-3;
+const CLOSED: f64 = 3e-3;
 
 /// Moulds elements and pebbles. False if the time ran out first.
 pub(super) fn mould(
@@ -73,7 +73,9 @@ pub(super) fn mould(
     let fine = |field: usize, outlines: &[Contour]| {
         let step = CORNERS * prepared.fields[field].sizes.spacing;
         let contours = outlines.iter().map(|contour| divided(contour, step)).collect();
-        Moving { field, gives_way: true, contours, warps: Vec::new() }
+        let contours: Vec<Contour> = contours;
+        let held = contours.iter().map(|contour| vec![Held::default(); contour.len()]).collect();
+        Moving { field, gives_way: true, contours, held, warps: Vec::new() }
     };
     let of_elements = placement.placed.par_iter().map(|placed| fine(placed.field, &placed.outlines));
     let of_fillers = fillers
@@ -100,11 +102,28 @@ pub(super) fn mould(
 /// Corners of an outline are this near to each other when it is moved, in spacings.
 const CORNERS: f64 = 0.03;
 
+/// What keeps a part of an outline where it is, in all that follows: what is beside it only grows.
+#[derive(Clone, Copy, Debug, Default)]
+struct Held {
+    /// It has no room left, nor has what moves along with it.
+    closed: bool,
+    /// It has a notch of its own before it: it is not pushed, but may move along.
+    still: bool,
+}
+
+impl Held {
+    fn both(self, other: Held) -> Held {
+        Held { closed: self.closed && other.closed, still: self.still && other.still }
+    }
+}
+
 /// A piece on its way.
 pub(super) struct Moving {
     pub field: usize,
     gives_way: bool,
     contours: Vec<Contour>,
+    /// For each corner.
+    held: Vec<Vec<Held>>,
     /// In the order of the stages.
     pub warps: Vec<Warp>,
 }
@@ -112,6 +131,18 @@ pub(super) struct Moving {
 impl Moving {
     /// Moves as a skin has grown.
     fn go(&mut self, skin: Skin) {
+        self.held = self.contours.iter().map(|contour| vec![Held::default(); contour.len()]).collect();
+        let mut start = 0;
+        for (held, &n) in self.held.iter_mut().zip(&skin.counts) {
+            for k in 0..n {
+                let (one, next) = (start + k, start + (k + 1) % n);
+                let end = if k + 1 == n { held.len() } else { skin.from[next] as usize };
+                let both = skin.held[one].both(skin.held[next]);
+                let len = held.len();
+                (skin.from[one] as usize + 1..=end).for_each(|corner| held[corner % len] = both);
+            }
+            start += n;
+        }
         if !skin.is_pushed() {
             return;
         }
@@ -134,8 +165,10 @@ struct Skin {
     /// The samples that others look at.
     seen: Vec<u32>,
     pushes: Vec<Vec2>,
-    /// Samples that have no room left.
-    closed: Vec<bool>,
+    held: Vec<Held>,
+    /// How many samples each contour has, and the corner at or before each sample.
+    counts: Vec<usize>,
+    from: Vec<u32>,
     /// None for what does not give way.
     ties: Option<Ties>,
     radius: f64,
@@ -149,9 +182,15 @@ impl Skin {
         let radius = stage.radius * field.sizes.spacing;
         let step = radius / SAMPLES;
         let (mut before, mut beside, mut sense) = (Vec::new(), Vec::new(), Vec::new());
-        let mut corners = Vec::new();
-        for contour in &moving.contours {
-            let (points, is_corner) = sampled(contour, step);
+        let (mut corners, mut counts, mut from, mut held) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for (contour, corners_held) in moving.contours.iter().zip(&moving.held) {
+            let Samples { points, is_corner, from: corner } = sampled(contour, step);
+            counts.push(points.len());
+            held.extend(corner.iter().map(|&k| {
+                let k = k as usize;
+                corners_held[k].both(corners_held[(k + 1) % contour.len()])
+            }));
+            from.extend(corner);
             let (start, n) = (before.len() as u32, points.len() as u32);
             beside.extend((0..n).map(|i| [start + (i + n - 1) % n, start + (i + 1) % n]));
             sense.extend(std::iter::repeat_n(signed_area(contour).signum(), points.len()));
@@ -159,13 +198,27 @@ impl Skin {
             corners.extend(is_corner);
         }
         let moves = moving.gives_way && is_moulded(field);
-        let ties = (moves && !before.is_empty()).then(|| Ties::new(&before, radius, step));
+        let is_pushed = || held.iter().map(|held| !held.closed && !held.still).collect::<Vec<_>>();
+        let ties = (moves && !before.is_empty()).then(|| Ties::new(&before, &is_pushed(), radius, step));
         let pushes = vec![Vec2::ZERO; before.len()];
         let now = before.clone();
-        let closed = vec![false; before.len()];
         let every = ((OTHERS * field.sizes.spacing / step) as usize).max(1);
         let seen = (0..before.len()).filter(|&i| corners[i] || i % every == 0).map(|i| i as u32).collect();
-        Skin { field: moving.field, before, now, beside, sense, seen, pushes, closed, ties, radius, step }
+        Skin {
+            field: moving.field,
+            before,
+            now,
+            beside,
+            sense,
+            seen,
+            pushes,
+            held,
+            counts,
+            from,
+            ties,
+            radius,
+            step,
+        }
     }
 
     fn is_pushed(&self) -> bool {
@@ -183,6 +236,9 @@ impl Skin {
     /// Pushes and samples after one more iteration, where each sample may move by so much.
     fn grown(&self, ties: &Ties, allowed: &Allowances, most: f64) -> (Vec<Vec2>, Vec<Point>) {
         let push = |i: usize| {
+            if !allowed.free[i] {
+                return self.pushes[i];
+            }
             // No more than any sample near by may move, since those move along.
             let by = ties.least(&allowed.to_others, i).min(allowed.to_itself[i]).max(0.0);
             let push = self.pushes[i] + by * self.normal(i);
@@ -196,6 +252,10 @@ impl Skin {
 
 /// How far each sample of a piece may move.
 struct Allowances {
+    /// Samples that may be pushed at all.
+    free: Vec<bool>,
+    /// Those whose room is known: they may be, or something near them.
+    asked: Vec<bool>,
     to_others: Vec<f64>,
     /// Across a notch of its own. Its walls may move along with what is beside them.
     to_itself: Vec<f64>,
@@ -247,13 +307,21 @@ impl<'a> Pieces<'a> {
             let limit = STEP.0.min(STEP.1 * stage.most) * spacing;
             let allowed = self.allowances(own, (skin, ties), skins, &table, limit);
             let (pushes, now) = skin.grown(ties, &allowed, field.params.mould * stage.most * spacing);
-            let closed = allowed.to_others.iter().map(|&by| by <= CLOSED * spacing).collect();
-            Some((pushes, now, closed))
+            let least = CLOSED * spacing;
+            let held = |(i, &before): (usize, &Held)| match allowed.asked[i] {
+                true => Held {
+                    closed: allowed.to_others[i] <= least,
+                    still: before.still || allowed.to_itself[i] <= least,
+                },
+                false => before,
+            };
+            let held = skin.held.iter().enumerate().map(held).collect();
+            Some((pushes, now, held))
         };
         let grown: Vec<_> = skins.par_iter().enumerate().map(grow).collect();
         for (skin, grown) in skins.iter_mut().zip(grown) {
-            if let Some((pushes, now, closed)) = grown {
-                (skin.pushes, skin.now, skin.closed) = (pushes, now, closed);
+            if let Some((pushes, now, held)) = grown {
+                (skin.pushes, skin.now, skin.held) = (pushes, now, held);
             }
         }
     }
@@ -275,24 +343,21 @@ impl<'a> Pieces<'a> {
         let beside = (skin.step.max(OTHERS * sizes.spacing) / 2.0).powi(2);
         let reach = self.widest_gap(sizes, own) + 2.0 * limit + skin.step;
         let margin = self.strokes[own] + sizes.tolerance();
-        let near_edge = !field.region.holds_circle(skin.now.iter().copied(), limit + margin);
         // A sample with no room left holds those near it; who has none but such beside it need not ask.
-        let held = |i: usize| ties.any(&skin.closed, i);
-        let free: Vec<bool> = (0..skin.now.len()).map(|i| !held(i)).collect();
-        let asked: Vec<bool> = (0..skin.now.len()).map(|i| !skin.closed[i] && ties.any(&free, i)).collect();
-        let mut allowed = Allowances { to_others: Vec::new(), to_itself: Vec::new() };
-        for (i, &p) in skin.now.iter().enumerate() {
-            if !asked[i] {
-                allowed.to_others.push(0.0);
-                allowed.to_itself.push(0.0);
-                continue;
-            }
+        let closed: Vec<bool> = skin.held.iter().map(|held| held.closed).collect();
+        let is_free = |i: usize| !closed[i] && !skin.held[i].still && !ties.any(&closed, i);
+        let free: Vec<bool> = (0..closed.len()).map(is_free).collect();
+        let asked: Vec<bool> = (0..closed.len()).map(|i| !closed[i] && ties.any(&free, i)).collect();
+        let places = || asked.iter().zip(&skin.now).filter_map(|(asked, &p)| asked.then_some(p));
+        let near_edge = !field.region.holds_circle(places(), limit + margin);
+        let (mut all_to_others, mut all_to_itself) = (vec![0.0; closed.len()], vec![0.0; closed.len()]);
+        for (i, &p) in skin.now.iter().enumerate().filter(|(i, _)| asked[*i]) {
             let (mut to_others, mut to_itself) = (limit, limit);
             let normal = skin.normal(i);
-            for (q, other) in table.near(p, reach) {
+            table.near(p, reach).for_each(|(q, other)| {
                 let squared = q.distance_squared(p);
                 if squared >= reach * reach {
-                    continue;
+                    return;
                 }
                 let apart = || (squared - beside).max(0.0).sqrt() - sizes.tolerance();
                 if other as usize != own {
@@ -301,16 +366,15 @@ impl<'a> Pieces<'a> {
                 } else if (q - p).dot(normal) > FACING * squared.sqrt() {
                     to_itself = to_itself.min(0.5 * (apart() - sizes.gap));
                 }
-            }
+            });
             if near_edge {
                 let inside = field.region.contains(p);
                 let room = if inside { field.region.distance(p, limit + margin) - margin } else { 0.0 };
                 to_others = to_others.min(room);
             }
-            allowed.to_others.push(to_others);
-            allowed.to_itself.push(to_itself);
+            (all_to_others[i], all_to_itself[i]) = (to_others, to_itself);
         }
-        allowed
+        Allowances { free, asked, to_others: all_to_others, to_itself: all_to_itself }
     }
 }
 
@@ -324,29 +388,41 @@ fn divided(contour: &Contour, step: f64) -> Contour {
     contour.iter().zip(next).flat_map(pieces).collect()
 }
 
-/// Points on a closed contour: no farther apart than `step`, and wherever it has turned by a third of a
-/// right angle since the last. With each, whether it is there for a turn.
-fn sampled(contour: &Contour, step: f64) -> (Vec<Point>, Vec<bool>) {
+/// Points on a closed contour.
+struct Samples {
+    points: Vec<Point>,
+    /// Whether each is there for a turn.
+    is_corner: Vec<bool>,
+    /// The corner of the contour at or before each.
+    from: Vec<u32>,
+}
+
+/// No farther apart than `step`, and wherever a contour has turned by a third of a right angle since the
+/// last.
+fn sampled(contour: &Contour, step: f64) -> Samples {
     const TURN: f64 = 0.52;
     let n = contour.len();
-    let (mut points, mut corners) = (Vec::new(), Vec::new());
+    let mut samples = Samples { points: Vec::new(), is_corner: Vec::new(), from: Vec::new() };
+    let mut add = |p: Point, is_corner: bool, i: usize| {
+        samples.points.push(p);
+        samples.is_corner.push(is_corner);
+        samples.from.push(i as u32);
+    };
     let (mut walked, mut turned) = (f64::INFINITY, 0.0);
     for i in 0..n {
         let (last, p, next) = (contour[(i + n - 1) % n], contour[i], contour[(i + 1) % n]);
         let (a, b) = (p - last, next - p);
         turned += libm::atan2(a.cross(b), a.dot(b)).abs();
         if turned >= TURN || walked >= step {
-            points.push(p);
-            corners.push(turned >= TURN);
+            add(p, turned >= TURN, i);
             (walked, turned) = (0.0, 0.0);
         }
         let length = b.hypot();
         let pieces = (length / step).floor().min(1e4);
         for k in 1..pieces as usize {
-            points.push(p.lerp(next, k as f64 / pieces));
-            corners.push(false);
+            add(p.lerp(next, k as f64 / pieces), false, i);
         }
         walked = if pieces > 1.0 { length / pieces } else { walked + length };
     }
-    (points, corners)
+    samples
 }
