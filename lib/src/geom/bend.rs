@@ -191,9 +191,9 @@ fn map_curve(
         // Nothing that a warp does lies unseen within a piece.
         let is_short = || {
             let (middle, length) = (cubic.p0.midpoint(cubic.p3), cubic.p0.distance(cubic.p3));
-            warps.iter().all(|warp| length < 1.5 * warp.radius() || !warp.reaches(middle, length / 2.0))
+            warps.iter().all(|warp| length < 2.5 * warp.radius() || !warp.reaches(middle, length / 2.0))
         };
-        if halvings == MOST_HALVINGS || (is_short() && near(0.5) && near(0.2) && near(0.8)) {
+        if halvings == MOST_HALVINGS || (is_short() && [0.5, 0.15, 0.85, 0.32, 0.68].into_iter().all(near)) {
             out.curve_to(cubic.p1, cubic.p2, cubic.p3);
         } else {
             let middle = f64::midpoint(t0, t1);

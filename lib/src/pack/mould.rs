@@ -178,7 +178,7 @@ struct Skin {
 impl Skin {
     fn new(moving: &Moving, field: &Field, stage: Stage) -> Self {
         /// Samples in a radius.
-        const SAMPLES: f64 = 4.0;
+        const SAMPLES: f64 = 3.0;
         let radius = stage.radius * field.sizes.spacing;
         let step = radius / SAMPLES;
         let (mut before, mut beside, mut sense) = (Vec::new(), Vec::new(), Vec::new());
