@@ -17,34 +17,59 @@ pub fn nearest_marked(marked: &[bool], columns: usize) -> (Vec<f64>, Vec<usize>)
     (nearest(marked, columns, Some(&mut cells)), cells)
 }
 
-/// `cells` are the numbers of the cells, and become those of the nearest marked ones.
+/// `cells` become the numbers of the nearest marked cells.
 fn nearest(marked: &[bool], columns: usize, mut cells: Option<&mut Vec<usize>>) -> Vec<f64> {
-    let rows = marked.len() / columns.max(1);
-    let mut grid: Vec<f64> = marked.iter().map(|&m| if m { 0.0 } else { f64::INFINITY }).collect();
-    let (mut line, mut roots) = (Vec::new(), Vec::new());
-    let mut hull = Hull::default();
-    for column in 0..columns {
-        line.clear();
-        line.extend((0..rows).map(|row| grid[row * columns + column]));
-        hull.transform(&mut line, &mut roots);
-        for (row, value) in line.iter().enumerate() {
-            grid[row * columns + column] = *value;
+    let columns = columns.max(1);
+    let rows = nearest_rows(marked, columns);
+    let mut grid = vec![f64::INFINITY; marked.len()];
+    let (mut hull, mut roots) = (Hull::default(), Vec::new());
+    for (row, (values, near)) in
+        grid.chunks_exact_mut(columns).zip(rows.chunks_exact(columns)).enumerate()
+    {
+        for (value, &near) in values.iter_mut().zip(near).filter(|(_, near)| **near != NO_ROW) {
+            let apart = row as f64 - f64::from(near);
+            *value = apart * apart;
         }
-        if let Some(cells) = &mut cells {
-            for (row, &root) in roots.iter().enumerate() {
-                cells[row * columns + column] = root * columns + column;
-            }
-        }
-    }
-    for (row, values) in grid.chunks_exact_mut(columns.max(1)).enumerate() {
         hull.transform(values, &mut roots);
         if let Some(cells) = &mut cells {
             let own = &mut cells[row * columns..(row + 1) * columns];
-            let before = own.to_vec();
-            own.iter_mut().zip(&roots).for_each(|(cell, &root)| *cell = before[root]);
+            for (cell, &root) in own.iter_mut().zip(&roots).filter(|(_, root)| near[**root] != NO_ROW) {
+                *cell = near[root] as usize * columns + root;
+            }
         }
     }
     grid
+}
+
+/// Stands for no row.
+const NO_ROW: u32 = u32::MAX;
+
+/// The row of the nearest marked cell in each cell's column, the upper of two.
+fn nearest_rows(marked: &[bool], columns: usize) -> Vec<u32> {
+    let mut rows: Vec<u32> = vec![NO_ROW; marked.len()];
+    let count = marked.len() / columns;
+    for row in 0..count {
+        let (before, own) = rows.split_at_mut(row * columns);
+        let above = before.chunks_exact(columns).next_back();
+        for (column, near) in own[..columns].iter_mut().enumerate() {
+            *near = match marked[row * columns + column] {
+                true => row as u32,
+                false => above.map_or(NO_ROW, |above| above[column]),
+            };
+        }
+    }
+    for row in (1..count).rev() {
+        let (before, own) = rows.split_at_mut(row * columns);
+        let at = row as u32 - 1;
+        for (near, &below) in before[(row - 1) * columns..].iter_mut().zip(&own[..columns]) {
+            // What is no row, or no row below, is far beyond all others.
+            let above = if *near == NO_ROW { NO_ROW } else { at - *near };
+            if below.wrapping_sub(at) < above {
+                *near = below;
+            }
+        }
+    }
+    rows
 }
 
 /// The lower envelope of parabolas, one rooted in every sample.

@@ -159,7 +159,7 @@ fn filler_item(filler: &Filler, made: &Made, scene: &Scene, decimals: usize) -> 
             template.parts.iter().map(part).collect()
         }
         _ => vec![Part {
-            path: filler.path(made.prepared.fields[filler.field].sizes.tolerance() / 4.0),
+            path: filler.path(),
             transform: Affine::IDENTITY,
             style: Style::filled(tone),
         }],

@@ -5,10 +5,9 @@ use super::gaps::{Gaps, Inked, Place};
 use super::insert::Ground;
 use super::motif::{Form, Motif, Pocket};
 use super::place::Placement;
-use super::prepare::{Field, Prepared};
+use super::prepare::Field;
 use super::template::Template;
 use crate::field::DirectionField;
-use crate::geom::bend::warped;
 use crate::geom::boolean::{Contour, signed_area};
 use crate::geom::flatten::flatten;
 use crate::geom::region::Region;
@@ -73,8 +72,9 @@ pub(super) struct Filler {
     pub stroke: f64,
     /// What keeps apart from neighbours.
     pub outlines: Vec<Contour>,
-    /// How it is moulded.
+    /// How it is moulded, and into what.
     pub warps: Vec<Warp>,
+    pub moulded: Option<BezPath>,
 }
 
 impl Filler {
@@ -84,8 +84,8 @@ impl Filler {
     }
 
     /// Its outlines, if it is not an element.
-    pub fn path(&self, tolerance: f64) -> BezPath {
-        if self.warps.is_empty() { self.plain() } else { warped(&self.plain(), &self.warps, tolerance) }
+    pub fn path(&self) -> BezPath {
+        self.moulded.clone().unwrap_or_else(|| self.plain())
     }
 
     /// From (u, v) of its template to its place.
@@ -121,7 +121,7 @@ pub(super) fn fill(
         all.push((index, Gaps::new(field, region, &covered, sizes)));
     }
     // Strokes take a part of the gaps that outlines leave.
-    let mean = if room.nooks { mean_gap(&all, prepared) - 0.3 * placement.widest_stroke() } else { 0.0 };
+    let mean = if room.nooks { mean_gap(&all) - 0.3 * placement.widest_stroke() } else { 0.0 };
     for (done, (index, gaps)) in all.into_iter().enumerate() {
         let field = &prepared.fields[index];
         let done = 0.5 + 0.5 * done as f64 / prepared.fields.len() as f64;
@@ -136,9 +136,9 @@ pub(super) fn fill(
 }
 
 /// Twice the mean distance in gaps to what is beside them: half their width, if they are channels.
-fn mean_gap(all: &[(usize, Gaps)], prepared: &Prepared) -> f64 {
-    let one = |(index, gaps): &(usize, Gaps)| gaps.emptiness(prepared.fields[*index].sizes.nook_edge);
-    let (area, sum) = all.iter().map(one).fold((0.0, 0.0), |all, one| (all.0 + one.0, all.1 + one.1));
+fn mean_gap(all: &[(usize, Gaps)]) -> f64 {
+    let all = all.iter().map(|(_, gaps)| gaps.emptiness());
+    let (area, sum) = all.fold((0.0, 0.0), |all, one| (all.0 + one.0, all.1 + one.1));
     2.0 * sum / f64::max(area, f64::MIN_POSITIVE)
 }
 
@@ -230,7 +230,7 @@ fn best(
             .collect();
         let area = outlines.iter().map(|outline| signed_area(outline).abs()).sum();
         let stroke = motif.stroke(form.transform, kinds.templates);
-        Filler { field: index, motif, form, area, stroke, outlines, warps: Vec::new() }
+        Filler { field: index, motif, form, area, stroke, outlines, warps: Vec::new(), moulded: None }
     };
     let largest = |motif: Motif| {
         let mut forms = motif.forms(&pocket, kinds.templates);

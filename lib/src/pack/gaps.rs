@@ -71,6 +71,7 @@ pub(super) struct Gaps<'a> {
     radii: Vec<f64>,
     /// Clearance of each cell's middle, about.
     estimates: Vec<f64>,
+    emptiness: (f64, f64),
 }
 
 impl<'a> Gaps<'a> {
@@ -101,58 +102,47 @@ impl<'a> Gaps<'a> {
             dots: PointGrid::new(bounds, 2.0 * largest),
             radii: Vec::new(),
             estimates: Vec::new(),
+            emptiness: (0.0, 0.0),
         };
-        gaps.estimate(&near);
+        gaps.estimate(field.sizes.nook_edge);
         gaps
     }
 
-    /// The room around every cell's middle, from the distance transform of all outlines, and what is far
-    /// inside the region.
-    fn estimate(&mut self, silhouettes: &[Contour]) {
-        let (columns, step) = (self.columns, self.step);
-        let distances = |contours: &[Contour]| {
-            let mut marked = vec![false; self.elements.len()];
-            contours.iter().for_each(|contour| self.mark(contour, &mut marked));
-            squared_distances(&marked, columns)
-        };
-        let region = self.region;
-        let (to_elements, to_boundary) =
-            rayon::join(|| distances(silhouettes), || distances(region.contours()));
-        let far = (self.reach / step + 2.0).powi(2);
+    /// The room around every cell's middle, from distance transforms, what is far inside the region, and how
+    /// empty it is, with a strip of `edge` around it.
+    fn estimate(&mut self, edge: f64) {
+        let (columns, step, gap, region) = (self.columns, self.step, self.gap, self.region);
         let rows = self.elements.len() / columns;
         let in_region = covered(region.contours(), self.origin, step, columns, rows);
-        let gap = self.gap;
-        // What is covered or outside must not look like more room than the gap beside it.
-        let signed =
-            |squared: f64, free: bool| if free { squared.sqrt() * step } else { -squared.sqrt() * step };
-        let estimate = |i: usize| {
-            let to_elements = signed(to_elements[i], !self.elements[i]) - gap;
-            to_elements.min(signed(to_boundary[i], in_region[i]))
-        };
-        let estimates = (0..self.elements.len()).map(estimate).collect();
-        self.estimates = estimates;
-        self.inner = in_region.into_iter().zip(&to_boundary).map(|(inside, &d)| inside && d > far).collect();
-    }
-
-    /// Area of the gaps in the region and `edge` around it, and the integral of the distances to what is beside
-    /// them.
-    pub fn emptiness(&self, edge: f64) -> (f64, f64) {
-        let (rows, cell) = (self.elements.len() / self.columns, self.step * self.step);
-        let in_region = covered(self.region.contours(), self.origin, self.step, self.columns, rows);
         let outside: Vec<bool> = in_region.iter().map(|inside| !inside).collect();
         let (to_elements, to_outside) = rayon::join(
-            || squared_distances(&self.elements, self.columns),
-            || squared_distances(&outside, self.columns),
+            || squared_distances(&self.elements, columns),
+            || squared_distances(&outside, columns),
         );
         // Half a cell lies between the middle of a covered cell and its edge.
-        let distance = |squared: f64| (squared.sqrt() - 0.5) * self.step;
-        let in_gap = (0..self.elements.len()).filter(|&i| in_region[i] && !self.elements[i]);
-        let (count, sum) = in_gap.fold((0.0, 0.0), |(count, sum), i| {
-            (count + 1.0, sum + distance(to_elements[i]).min(distance(to_outside[i]) + edge))
-        });
+        let distance = |squared: f64| (squared.sqrt() - 0.5) * step;
+        let (mut count, mut sum) = (0.0, 0.0);
+        self.estimates = (0..self.elements.len())
+            .map(|i| {
+                let (to_elements, to_outside) = (distance(to_elements[i]), distance(to_outside[i]));
+                if in_region[i] && !self.elements[i] {
+                    count += 1.0;
+                    sum += to_elements.min(to_outside + edge);
+                }
+                (to_elements - gap).min(to_outside)
+            })
+            .collect();
+        let far = (self.reach / step + 2.0).powi(2);
+        self.inner = to_outside.iter().map(|&squared| squared > far).collect();
         let length = |contour: &Contour| polyline::length(&closed(contour));
-        let strip = edge * self.region.contours().iter().map(length).sum::<f64>();
-        (cell * count + strip, cell * sum + strip * edge / 2.0)
+        let strip = edge * region.contours().iter().map(length).sum::<f64>();
+        self.emptiness = (step * step * count + strip, step * step * sum + strip * edge / 2.0);
+    }
+
+    /// Area of the gaps in the region and in the strip around it that nooks keep free, and the integral of the
+    /// distances to what is beside them.
+    pub fn emptiness(&self) -> (f64, f64) {
+        self.emptiness
     }
 
     /// The middles of the gaps where there is room for more than `smallest`, with an estimate of their
@@ -165,8 +155,10 @@ impl<'a> Gaps<'a> {
             if most <= smallest || self.elements[i] {
                 continue;
             }
-            let neighbours = [i.wrapping_sub(1), i + 1, i.wrapping_sub(self.columns), i + self.columns];
-            if neighbours.into_iter().all(|j| self.estimates.get(j).is_none_or(|&other| other <= free)) {
+            let (above, below) = (i.wrapping_sub(self.columns), i + self.columns);
+            let neighbours = [above, below].into_iter().flat_map(|k| [k.wrapping_sub(1), k, k + 1]);
+            let mut neighbours = neighbours.chain([i.wrapping_sub(1), i + 1]);
+            if neighbours.all(|j| self.estimates.get(j).is_none_or(|&other| other <= free)) {
                 heap.push(Place::new(self.middle(i), most));
             }
         }
@@ -268,22 +260,6 @@ impl<'a> Gaps<'a> {
     fn middle(&self, cell: usize) -> Point {
         self.origin
             + Vec2::new((cell % self.columns) as f64 + 0.5, (cell / self.columns) as f64 + 0.5) * self.step
-    }
-
-    /// Marks the cells that a contour passes.
-    fn mark(&self, contour: &[Point], marked: &mut [bool]) {
-        let Some(&last) = contour.last() else { return };
-        let mut previous = last;
-        for &p in contour {
-            let pieces = (previous.distance(p) / (0.5 * self.step)).ceil().clamp(1.0, 1e4);
-            for k in 0..pieces as usize {
-                let at = previous.lerp(p, k as f64 / pieces);
-                if let Some(cell) = self.cell(at) {
-                    marked[cell] = true;
-                }
-            }
-            previous = p;
-        }
     }
 }
 

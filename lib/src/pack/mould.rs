@@ -177,10 +177,11 @@ struct Skin {
 
 impl Skin {
     fn new(moving: &Moving, field: &Field, stage: Stage) -> Self {
-        /// Samples in a radius.
+        /// Samples in a radius, and how far apart they are at most, in spacings.
         const SAMPLES: f64 = 3.0;
+        const FARTHEST: f64 = 0.0425;
         let radius = stage.radius * field.sizes.spacing;
-        let step = radius / SAMPLES;
+        let step = (radius / SAMPLES).min(FARTHEST * field.sizes.spacing);
         let (mut before, mut beside, mut sense) = (Vec::new(), Vec::new(), Vec::new());
         let (mut corners, mut counts, mut from, mut held) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (contour, corners_held) in moving.contours.iter().zip(&moving.held) {
@@ -388,6 +389,13 @@ fn divided(contour: &Contour, step: f64) -> Contour {
     contour.iter().zip(next).flat_map(pieces).collect()
 }
 
+/// The angle between two directions, exact enough for small ones; larger ones are large.
+fn turn(a: Vec2, b: Vec2) -> f64 {
+    let lengths = (a.hypot2() * b.hypot2()).sqrt().max(f64::MIN_POSITIVE);
+    let sine = a.cross(b).abs() / lengths;
+    if a.dot(b) > 0.0 { sine } else { std::f64::consts::PI - sine }
+}
+
 /// Points on a closed contour.
 struct Samples {
     points: Vec<Point>,
@@ -400,7 +408,7 @@ struct Samples {
 /// No farther apart than `step`, and wherever a contour has turned by a third of a right angle since the
 /// last.
 fn sampled(contour: &Contour, step: f64) -> Samples {
-    const TURN: f64 = 0.52;
+    const TURN: f64 = 0.5;
     let n = contour.len();
     let mut samples = Samples { points: Vec::new(), is_corner: Vec::new(), from: Vec::new() };
     let mut add = |p: Point, is_corner: bool, i: usize| {
@@ -412,7 +420,7 @@ fn sampled(contour: &Contour, step: f64) -> Samples {
     for i in 0..n {
         let (last, p, next) = (contour[(i + n - 1) % n], contour[i], contour[(i + 1) % n]);
         let (a, b) = (p - last, next - p);
-        turned += libm::atan2(a.cross(b), a.dot(b)).abs();
+        turned += turn(a, b);
         if turned >= TURN || walked >= step {
             add(p, turned >= TURN, i);
             (walked, turned) = (0.0, 0.0);

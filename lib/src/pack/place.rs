@@ -10,7 +10,7 @@ use super::choose::{Pose, extent, fit};
 use super::params::Sizes;
 use super::prepare::{Field, Prepared};
 use super::refine::Body;
-use super::template::{BINS, Template};
+use super::template::{BINS, Template, subpaths};
 use crate::field::LineKind;
 use crate::geom::bend::Bend;
 use crate::geom::boolean::{Contour, area, is_outer, simplified};
@@ -50,7 +50,9 @@ pub(super) struct Placed {
     pub centre: Point,
     pub area: f64,
     pub spine: Vec<Point>,
-    /// What keeps apart from neighbours.
+    /// Its outer subpaths, bent.
+    pub outer: Vec<BezPath>,
+    /// What keeps apart from neighbours: those as polygons.
     pub outlines: Vec<Contour>,
     /// Outer contours alone, without holes.
     pub silhouette: Vec<Contour>,
@@ -59,7 +61,20 @@ pub(super) struct Placed {
 impl Placed {
     /// The template's paths, bent.
     pub fn paths(&self, template: &Template, sizes: &Sizes) -> Vec<BezPath> {
-        unfolded(template, self.pose, &self.bend, sizes)
+        let mut outer = self.outer.iter();
+        let mut is_outer = template.is_outer.iter();
+        let mut one = |path: &BezPath| {
+            let mut whole = BezPath::new();
+            for subpath in subpaths(path) {
+                match is_outer.next() {
+                    Some(true) => whole.extend(outer.next().into_iter().flatten()),
+                    _ => whole.extend(bent([&subpath], self.pose, &self.bend, FINER * sizes.tolerance()).remove(0)),
+                }
+            }
+            whole
+        };
+        let paths = template.parts.iter().map(|(path, _)| one(path)).collect();
+        unfolded(paths, template, self.pose, &self.bend, sizes)
     }
 }
 
@@ -70,6 +85,7 @@ struct Candidate {
     scale: f64,
     /// Half stroke width.
     stroke: f64,
+    outer: Vec<BezPath>,
     outlines: Vec<Contour>,
     /// Outer contours alone; empty until it is known that the candidate goes.
     silhouette: Vec<Contour>,
@@ -151,7 +167,7 @@ impl Placement {
     }
 
     fn accept(&mut self, body: &Body, candidate: Candidate) {
-        let Candidate { pose, bend, scale, stroke, outlines, silhouette } = candidate;
+        let Candidate { pose, bend, scale, stroke, outer, outlines, silhouette } = candidate;
         let owner = self.strokes.len() as u32;
         outlines.iter().for_each(|outline| self.outlines.insert_contour(outline, owner));
         self.strokes.push(stroke);
@@ -166,6 +182,7 @@ impl Placement {
             area: area(&silhouette),
             spine: (0..=24).map(|i| bend.spine.jet(f64::from(i) / 24.0).p).collect(),
             bend,
+            outer,
             outlines,
             silhouette,
         });
@@ -248,13 +265,14 @@ fn candidate(body: &Body, (width, cut): (f64, f64), template: &Template, field: 
     // The geometric mean of the scales along and across, for stroke widths.
     let along = (part.1 - part.0) * length / template.length;
     let scale = width * along * libm::exp(fit.distortion / 2.0);
-    let paths = bent(&template.outer, fit.pose, &bend, FINER * field.sizes.tolerance());
-    let outlines = paths.iter().flat_map(|path| outlines(path, &field.sizes)).collect();
+    let outer = bent(&template.outer, fit.pose, &bend, FINER * field.sizes.tolerance());
+    let outlines = outer.iter().flat_map(|path| outlines(path, &field.sizes)).collect();
     Some(Candidate {
         pose: fit.pose,
         bend,
         scale,
         stroke: template.stroke * scale,
+        outer,
         outlines,
         silhouette: Vec::new(),
     })
@@ -296,19 +314,25 @@ pub(super) fn silhouette(outlines: &[Contour]) -> Vec<Contour> {
 /// Curves are bent finer than the chords of the checks.
 pub(super) const FINER: f64 = 0.25;
 
-/// The whole template bent into place. The map keeps the sides of the thinnest needle apart,
+/// The whole template, whose `paths` are bent into place. The map keeps the sides of the thinnest needle apart,
 /// but curves that are near the truth may cross where the truth does not by less than that; a
 /// drawn element is then bent finer.
-fn unfolded(template: &Template, pose: Pose, bend: &Bend, sizes: &Sizes) -> Vec<BezPath> {
+fn unfolded(
+    mut paths: Vec<BezPath>,
+    template: &Template,
+    pose: Pose,
+    bend: &Bend,
+    sizes: &Sizes,
+) -> Vec<BezPath> {
     const FINEST: f64 = 1e-6;
     let mut share = FINER;
     loop {
         let tolerance = share * sizes.tolerance();
-        let paths = bent(template.parts.iter().map(|(path, _)| path), pose, bend, tolerance);
         if template.builtin || template.crosses_itself || share < FINEST || !any_crossing(&paths, tolerance) {
             return paths;
         }
         share /= 16.0;
+        paths = bent(template.parts.iter().map(|(path, _)| path), pose, bend, share * sizes.tolerance());
     }
 }
 

@@ -13,12 +13,14 @@ use crate::geom::crossing::self_crossings;
 use crate::geom::flatten::flatten;
 use crate::geom::near::{SegmentGrid, segment_segment};
 use crate::geom::warp::Warp;
-use kurbo::{ParamCurve, Point};
+use kurbo::{BezPath, ParamCurve, Point};
 use rayon::prelude::*;
 
 /// A piece as it is moulded.
 struct Moulded {
     warps: Vec<Warp>,
+    /// Outer subpaths, and as polygons.
+    outer: Vec<BezPath>,
     outlines: Vec<Contour>,
 }
 
@@ -95,16 +97,16 @@ pub(super) fn settle(
         changed = lowered;
     }
     for (i, moulded) in settled.into_iter().enumerate() {
-        let Some(Moulded { warps, outlines }) = moulded else { continue };
+        let Some(Moulded { warps, outer, outlines }) = moulded else { continue };
         if i < elements {
             let placed = &mut placement.placed[i];
             placed.silhouette = silhouette(&outlines);
             placed.area = area(&placed.silhouette);
-            (placed.bend.warps, placed.outlines) = (warps, outlines);
+            (placed.bend.warps, placed.outer, placed.outlines) = (warps, outer, outlines);
         } else {
             let filler = &mut fillers[i - elements];
             filler.area = area(&outlines);
-            (filler.warps, filler.outlines) = (warps, outlines);
+            (filler.warps, filler.moulded, filler.outlines) = (warps, outer.into_iter().next(), outlines);
         }
     }
     placement.replace_outlines(outlines);
@@ -126,15 +128,15 @@ fn of_element(template: &Template, pose: Pose, bend: Bend, sizes: &Sizes) -> Opt
     if !bend.keeps_sense(places.map(posed)) {
         return None;
     }
-    let paths = bent(&template.outer, pose, &bend, FINER * sizes.tolerance());
-    let outlines: Vec<Contour> = paths
+    let outer = bent(&template.outer, pose, &bend, FINER * sizes.tolerance());
+    let outlines: Vec<Contour> = outer
         .iter()
         .flat_map(|path| flatten(path, CLOSER * sizes.tolerance()))
         .map(|subpath| subpath.points)
         .collect();
     let is_simple =
         template.crosses_itself || outlines.iter().all(|outline| self_crossings(outline, 1).is_empty());
-    is_simple.then_some(Moulded { warps: bend.warps, outlines })
+    is_simple.then_some(Moulded { warps: bend.warps, outer, outlines })
 }
 
 /// A pebble with its new outline.
@@ -144,7 +146,7 @@ fn of_filler(filler: &Filler, warps: Vec<Warp>, sizes: &Sizes) -> Option<Moulded
     let outlines: Vec<Contour> =
         flatten(&path, CLOSER * sizes.tolerance()).into_iter().map(|subpath| subpath.points).collect();
     let is_simple = outlines.iter().all(|outline| self_crossings(outline, 1).is_empty());
-    is_simple.then_some(Moulded { warps, outlines })
+    is_simple.then_some(Moulded { warps, outer: vec![path], outlines })
 }
 
 impl Pieces<'_> {

@@ -25,6 +25,8 @@ pub(super) struct Template {
     pub crosses_itself: bool,
     /// The subpaths that no other one encloses: what keeps apart from neighbours.
     pub outer: Vec<BezPath>,
+    /// Which of all subpaths, part by part, they are.
+    pub is_outer: Vec<bool>,
     /// Largest extent on the side v > 0 and v < 0 in each bin of u.
     pub extents: [Vec<f64>; 2],
     /// Widest extent on either side.
@@ -99,9 +101,12 @@ impl Template {
         let parts: Vec<(BezPath, Style)> =
             parts.into_iter().map(|(path, style, _)| (to_uv * path, style)).collect();
         let paths: Vec<BezPath> = parts.iter().map(|(path, _)| path.clone()).collect();
+        let subpaths: Vec<BezPath> = paths.iter().flat_map(subpaths).collect();
+        let is_outer = is_outer(&subpaths);
         Ok(Template {
             crosses_itself: !builtin && any_crossing(&paths, 1e-4),
-            outer: outer(&parts),
+            outer: subpaths.into_iter().zip(&is_outer).filter_map(|(path, &is)| is.then_some(path)).collect(),
+            is_outer,
             id: source.id.clone(),
             builtin,
             names,
@@ -154,10 +159,10 @@ impl Side {
     }
 }
 
-/// Subpaths whose outline does not lie inside that of another.
-fn outer(parts: &[(BezPath, Style)]) -> Vec<BezPath> {
+/// The subpaths of a path, each a path of its own.
+pub(super) fn subpaths(path: &BezPath) -> Vec<BezPath> {
     let mut subpaths: Vec<BezPath> = Vec::new();
-    for el in parts.iter().flat_map(|(path, _)| path.elements()) {
+    for el in path.elements() {
         if matches!(el, PathEl::MoveTo(_)) || subpaths.is_empty() {
             subpaths.push(BezPath::new());
         }
@@ -165,6 +170,11 @@ fn outer(parts: &[(BezPath, Style)]) -> Vec<BezPath> {
             last.push(*el);
         }
     }
+    subpaths
+}
+
+/// Which subpaths have an outline that does not lie inside that of another.
+fn is_outer(subpaths: &[BezPath]) -> Vec<bool> {
     let boxes: Vec<Rect> = subpaths.iter().map(|subpath| subpath.control_box()).collect();
     let encloses = |j: usize, i: usize| {
         // Most pairs are told apart by their boxes.
@@ -176,7 +186,7 @@ fn outer(parts: &[(BezPath, Style)]) -> Vec<BezPath> {
         Region::new(flat(j)).is_some_and(|outer| flat(i).iter().flatten().all(|&p| outer.contains(p)))
     };
     let all = 0..subpaths.len();
-    all.clone().filter(|&i| !all.clone().any(|j| encloses(j, i))).map(|i| subpaths[i].clone()).collect()
+    all.clone().map(|i| !all.clone().any(|j| encloses(j, i))).collect()
 }
 
 fn max(values: &[f64]) -> f64 {
