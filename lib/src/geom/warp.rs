@@ -131,6 +131,9 @@ pub struct Ties {
 impl Ties {
     /// Between samples that are about `step` apart, for those that may be pushed and what is near them.
     pub fn new(samples: &[Point], is_pushed: &[bool], radius: f64, step: f64) -> Self {
+        if !is_pushed.contains(&true) {
+            return Ties { starts: vec![0; samples.len() + 1], near: Vec::new() };
+        }
         let table = table(samples, radius, |_| true);
         let (squared_radius, fade) = (radius * radius, fade(radius, step));
         let near = |i: usize| {
@@ -160,14 +163,19 @@ impl Ties {
         &self.near[self.starts[i] as usize..self.starts[i + 1] as usize]
     }
 
+    /// The samples that may move.
+    pub fn moved(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.starts.len() - 1).filter(|&i| !self.row(i).is_empty())
+    }
+
     /// The least of the values near a sample.
     pub fn least(&self, values: &[f64], i: usize) -> f64 {
         self.row(i).iter().map(|&(j, _)| values[j as usize]).fold(f64::INFINITY, f64::min)
     }
 
     /// True if any of the samples near one is so.
-    pub fn any(&self, is_so: &[bool], i: usize) -> bool {
-        self.row(i).iter().any(|&(j, _)| is_so[j as usize])
+    pub fn any(&self, i: usize, is_so: impl Fn(usize) -> bool) -> bool {
+        self.row(i).iter().any(|&(j, _)| is_so(j as usize))
     }
 
     /// How far a sample moves.

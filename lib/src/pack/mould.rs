@@ -169,8 +169,10 @@ struct Skin {
     /// How many samples each contour has, and the corner at or before each sample.
     counts: Vec<usize>,
     from: Vec<u32>,
-    /// None for what does not give way.
-    ties: Option<Ties>,
+    /// Whether any sample may be pushed, and those that may move then.
+    gives_way: bool,
+    moved: Vec<u32>,
+    ties: Ties,
     radius: f64,
     step: f64,
 }
@@ -199,8 +201,10 @@ impl Skin {
             corners.extend(is_corner);
         }
         let moves = moving.gives_way && is_moulded(field);
-        let is_pushed = || held.iter().map(|held| !held.closed && !held.still).collect::<Vec<_>>();
-        let ties = (moves && !before.is_empty()).then(|| Ties::new(&before, &is_pushed(), radius, step));
+        let is_pushed: Vec<bool> =
+            held.iter().map(|held: &Held| moves && !held.closed && !held.still).collect();
+        let ties = Ties::new(&before, &is_pushed, radius, step);
+        let moved = ties.moved().map(|i| i as u32).collect::<Vec<_>>();
         let pushes = vec![Vec2::ZERO; before.len()];
         let now = before.clone();
         let every = ((OTHERS * field.sizes.spacing / step) as usize).max(1);
@@ -216,6 +220,8 @@ impl Skin {
             held,
             counts,
             from,
+            gives_way: moves && !moved.is_empty(),
+            moved,
             ties,
             radius,
             step,
@@ -234,29 +240,58 @@ impl Skin {
         normal / normal.hypot().max(f64::MIN_POSITIVE)
     }
 
-    /// Pushes and samples after one more iteration, where each sample may move by so much.
-    fn grown(&self, ties: &Ties, allowed: &Allowances, most: f64) -> (Vec<Vec2>, Vec<Point>) {
-        let push = |i: usize| {
-            if !allowed.free[i] {
-                return self.pushes[i];
-            }
+    /// One more iteration, where each sample may move by so much.
+    fn grown(&self, allowed: &Allowances, most: f64, closed: f64) -> Grown {
+        let mut pushes = self.pushes.clone();
+        for &i in &allowed.free {
+            let i = i as usize;
             // No more than any sample near by may move, since those move along.
-            let by = ties.least(&allowed.to_others, i).min(allowed.to_itself[i]).max(0.0);
+            let by = self.ties.least(&allowed.to_others, i).min(allowed.to_itself[i]).max(0.0);
             let push = self.pushes[i] + by * self.normal(i);
-            push * (most / push.hypot().max(most))
+            pushes[i] = push * (most / push.hypot().max(most));
+        }
+        let place = |&i: &u32| self.before[i as usize] + self.ties.push(&pushes, i as usize);
+        let held = |&i: &u32| {
+            let i = i as usize;
+            let still = self.held[i].still || allowed.to_itself[i] <= closed;
+            Held { closed: allowed.to_others[i] <= closed, still }
         };
-        let pushes: Vec<Vec2> = (0..self.now.len()).map(push).collect();
-        let now = (0..self.now.len()).map(|i| self.before[i] + ties.push(&pushes, i)).collect();
-        (pushes, now)
+        let now = self.moved.iter().map(place).collect();
+        Grown { now, held: allowed.asked.iter().map(held).collect(), asked: allowed.asked.clone(), pushes }
+    }
+
+    /// Moves on.
+    fn take(&mut self, grown: Grown) {
+        self.pushes = grown.pushes;
+        self.moved.iter().zip(grown.now).for_each(|(&i, p)| self.now[i as usize] = p);
+        grown.asked.iter().zip(grown.held).for_each(|(&i, held)| self.held[i as usize] = held);
     }
 }
 
-/// How far each sample of a piece may move.
+/// What an iteration makes of a piece.
+struct Grown {
+    pushes: Vec<Vec2>,
+    /// Where what may move is.
+    now: Vec<Point>,
+    /// Those whose room was asked for, and what holds them.
+    asked: Vec<u32>,
+    held: Vec<Held>,
+}
+
+/// What pieces see of each other.
+struct Others {
+    /// Samples with the numbers of their pieces.
+    table: PointTable,
+    gives_way: Vec<bool>,
+}
+
+/// How far the samples of a piece may move.
 struct Allowances {
     /// Samples that may be pushed at all.
-    free: Vec<bool>,
+    free: Vec<u32>,
     /// Those whose room is known: they may be, or something near them.
-    asked: Vec<bool>,
+    asked: Vec<u32>,
+    /// For all samples, nothing where it is not known.
     to_others: Vec<f64>,
     /// Across a notch of its own. Its walls may move along with what is beside them.
     to_itself: Vec<f64>,
@@ -292,38 +327,26 @@ impl<'a> Pieces<'a> {
     /// One iteration.
     fn grow(&self, skins: &mut [Skin], stage: Stage) {
         let fields = &self.prepared.fields;
-        let seen = |(skin, i): (&Skin, u32)| {
-            let places = skin.seen.iter().map(|&k| (skin.now[k as usize], i));
-            places.collect::<Vec<_>>()
-        };
-        let all = skins.iter().zip(0..).flat_map(seen);
-        let all: Vec<(Point, u32)> = all.collect();
+        let mut all: Vec<(Point, u32)> = Vec::new();
+        for (skin, i) in skins.iter().zip(0..) {
+            all.extend(skin.seen.iter().map(|&k| (skin.now[k as usize], i)));
+        }
         let cell = fields.iter().map(|field| field.sizes.safe_gap()).fold(0.0, f64::max);
-        let table = PointTable::new(self.prepared.bounds, cell, &all);
+        let others = Others {
+            table: PointTable::new(self.prepared.bounds, cell, &all),
+            gives_way: skins.iter().map(|skin| skin.gives_way).collect(),
+        };
         // Each looks only at the last state, so any number of threads gives the same.
         let grow = |(own, skin): (usize, &Skin)| {
-            let ties = skin.ties.as_ref()?;
             let field = &fields[skin.field];
             let spacing = field.sizes.spacing;
             let limit = STEP.0.min(STEP.1 * stage.most) * spacing;
-            let allowed = self.allowances(own, (skin, ties), skins, &table, limit);
-            let (pushes, now) = skin.grown(ties, &allowed, field.params.mould * stage.most * spacing);
-            let least = CLOSED * spacing;
-            let held = |(i, &before): (usize, &Held)| match allowed.asked[i] {
-                true => Held {
-                    closed: allowed.to_others[i] <= least,
-                    still: before.still || allowed.to_itself[i] <= least,
-                },
-                false => before,
-            };
-            let held = skin.held.iter().enumerate().map(held).collect();
-            Some((pushes, now, held))
+            let allowed = skin.gives_way.then(|| self.allowances(own, skin, &others, limit))?;
+            Some(skin.grown(&allowed, field.params.mould * stage.most * spacing, CLOSED * spacing))
         };
         let grown: Vec<_> = skins.par_iter().enumerate().map(grow).collect();
         for (skin, grown) in skins.iter_mut().zip(grown) {
-            if let Some((pushes, now, held)) = grown {
-                (skin.pushes, skin.now, skin.held) = (pushes, now, held);
-            }
+            grown.into_iter().for_each(|grown| skin.take(grown));
         }
     }
 
@@ -331,9 +354,8 @@ impl<'a> Pieces<'a> {
     fn allowances(
         &self,
         own: usize,
-        (skin, ties): (&Skin, &Ties),
-        skins: &[Skin],
-        table: &PointTable,
+        skin: &Skin,
+        others: &Others,
         limit: f64,
     ) -> Allowances {
         /// Cosine of the widest angle between a normal and what it faces.
@@ -345,24 +367,31 @@ impl<'a> Pieces<'a> {
         let reach = self.widest_gap(sizes, own) + 2.0 * limit + skin.step;
         let margin = self.strokes[own] + sizes.tolerance();
         // A sample with no room left holds those near it; who has none but such beside it need not ask.
-        let closed: Vec<bool> = skin.held.iter().map(|held| held.closed).collect();
-        let is_free = |i: usize| !closed[i] && !skin.held[i].still && !ties.any(&closed, i);
-        let free: Vec<bool> = (0..closed.len()).map(is_free).collect();
-        let asked: Vec<bool> = (0..closed.len()).map(|i| !closed[i] && ties.any(&free, i)).collect();
-        let places = || asked.iter().zip(&skin.now).filter_map(|(asked, &p)| asked.then_some(p));
-        let near_edge = !field.region.holds_circle(places(), limit + margin);
-        let (mut all_to_others, mut all_to_itself) = (vec![0.0; closed.len()], vec![0.0; closed.len()]);
-        for (i, &p) in skin.now.iter().enumerate().filter(|(i, _)| asked[*i]) {
+        let (ties, held, n) = (&skin.ties, &skin.held, skin.now.len());
+        let mut is_free = vec![false; n];
+        for &i in &skin.moved {
+            let Held { closed, still } = held[i as usize];
+            is_free[i as usize] = !closed && !still && !ties.any(i as usize, |j| held[j].closed);
+        }
+        let is_asked = |&i: &u32| !held[i as usize].closed && ties.any(i as usize, |j| is_free[j]);
+        let asked: Vec<u32> = skin.moved.iter().copied().filter(is_asked).collect();
+        let free: Vec<u32> = asked.iter().copied().filter(|&i| is_free[i as usize]).collect();
+        let places = asked.iter().map(|&i| skin.now[i as usize]);
+        let near_edge = !field.region.holds_circle(places, limit + margin);
+        let (mut all_to_others, mut all_to_itself) = (vec![0.0; n], vec![0.0; n]);
+        for &i in &asked {
+            let i = i as usize;
+            let p = skin.now[i];
             let (mut to_others, mut to_itself) = (limit, limit);
             let normal = skin.normal(i);
-            table.near(p, reach).for_each(|(q, other)| {
+            others.table.near(p, reach).for_each(|(q, other)| {
                 let squared = q.distance_squared(p);
                 if squared >= reach * reach {
                     return;
                 }
                 let apart = || (squared - beside).max(0.0).sqrt() - sizes.tolerance();
                 if other as usize != own {
-                    let share = if skins[other as usize].ties.is_some() { 0.5 } else { 1.0 };
+                    let share = if others.gives_way[other as usize] { 0.5 } else { 1.0 };
                     to_others = to_others.min(share * (apart() - self.gap(sizes, own, other as usize)));
                 } else if (q - p).dot(normal) > FACING * squared.sqrt() {
                     to_itself = to_itself.min(0.5 * (apart() - sizes.gap));
