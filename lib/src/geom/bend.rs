@@ -139,8 +139,7 @@ fn map_path(
     let mut start = Point::ZERO;
     let mut at = Point::ZERO;
     let place = |at: Point| warps.iter().fold(map(at).p, |p, warp| warp.point(p));
-    let curve =
-        |cubic: CubicBez, out: &mut BezPath| map_curve(cubic, (&map, &place), warps, tolerance, out);
+    let curve = |cubic: CubicBez, out: &mut BezPath| map_curve(cubic, (&map, &place), warps, tolerance, out);
     for el in path.elements() {
         match *el {
             PathEl::MoveTo(p) => {
@@ -187,8 +186,7 @@ fn map_curve(
     while let Some((t0, e0, t1, e1, halvings)) = pieces.pop() {
         let h = (t1 - t0) / 3.0;
         let cubic = CubicBez::new(e0.0, e0.0 + h * e0.1, e1.0 - h * e1.1, e1.0);
-        let near =
-            |s: f64| place(source.eval(t0 + s * (t1 - t0))).distance(cubic.eval(s)) <= tolerance;
+        let near = |s: f64| place(source.eval(t0 + s * (t1 - t0))).distance(cubic.eval(s)) <= tolerance;
         // Nothing that a warp does lies unseen within a piece.
         let is_short = || {
             let (middle, length) = (cubic.p0.midpoint(cubic.p3), cubic.p0.distance(cubic.p3));

@@ -23,9 +23,7 @@ fn nearest(marked: &[bool], columns: usize, mut cells: Option<&mut Vec<usize>>) 
     let rows = nearest_rows(marked, columns);
     let mut grid = vec![f64::INFINITY; marked.len()];
     let (mut hull, mut roots) = (Hull::default(), Vec::new());
-    for (row, (values, near)) in
-        grid.chunks_exact_mut(columns).zip(rows.chunks_exact(columns)).enumerate()
-    {
+    for (row, (values, near)) in grid.chunks_exact_mut(columns).zip(rows.chunks_exact(columns)).enumerate() {
         for (value, &near) in values.iter_mut().zip(near).filter(|(_, near)| **near != NO_ROW) {
             let apart = row as f64 - f64::from(near);
             *value = apart * apart;

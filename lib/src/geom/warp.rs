@@ -215,7 +215,8 @@ mod tests {
     #[test]
     fn samples_move_as_their_ties_say() {
         let (samples, pushes) = circle();
-        let (ties, warp) = (Ties::new(&samples, &[true; 90], 3.0, 0.7), Warp::new(&samples, pushes.clone(), 3.0, 0.7));
+        let (ties, warp) =
+            (Ties::new(&samples, &[true; 90], 3.0, 0.7), Warp::new(&samples, pushes.clone(), 3.0, 0.7));
         for (i, &p) in samples.iter().enumerate() {
             let moved = warp.point(p) - p;
             assert!((moved - ties.push(&pushes, i)).hypot() < 1e-12);

@@ -158,11 +158,7 @@ fn filler_item(filler: &Filler, made: &Made, scene: &Scene, decimals: usize) -> 
             };
             template.parts.iter().map(part).collect()
         }
-        _ => vec![Part {
-            path: filler.path(),
-            transform: Affine::IDENTITY,
-            style: Style::filled(tone),
-        }],
+        _ => vec![Part { path: filler.path(), transform: Affine::IDENTITY, style: Style::filled(tone) }],
     };
     let finish = made.finish(filler.field);
     let parts = parts.into_iter().filter_map(|part| finish.part(part)).collect();

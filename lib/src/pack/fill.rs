@@ -33,7 +33,7 @@ pub(super) struct Room {
 
 /// Smaller ones read as dust where there is room for others.
 pub(super) const GAPS: Room = Room { smallest: 0.05, step: 1.0 / 13.0, nooks: false };
-pub(super) const NOOKS: Room = Room { smallest: 0.014, step: 1.0 / 36.0, nooks: true };
+pub(super) const NOOKS: Room = Room { smallest: 0.014, step: 1.0 / 24.0, nooks: true };
 
 /// The widest gap that stays as it is, over the mean of all. In channels of one width, three pieces that meet
 /// leave 1.15.
@@ -165,9 +165,8 @@ fn fill_field(
     (room, mut gaps, smallest): (Room, Gaps, f64),
     mut go_on: impl FnMut() -> bool,
 ) -> bool {
-    let (gap, stroke) = (room.of(field).1, kinds.stroke(field));
     let largest = LARGEST * field.sizes.spacing;
-    let mut heap = gaps.middles(smallest);
+    let mut heap = gaps.places(inked(placement), smallest);
     const ASK_EVERY: usize = 256;
     let mut popped = 0;
     while let Some(place) = heap.pop() {
@@ -175,13 +174,19 @@ fn fill_field(
         if popped % ASK_EVERY == 0 && !go_on() {
             return false;
         }
-        // The middle may be up to a diagonal of a cell away.
-        if gaps.clearance(inked(placement), place.at()) < smallest - gaps.step {
+        // What was placed since then may have taken the room.
+        let free = gaps.clearance(inked(placement), place.at());
+        if free + gaps.fineness() < smallest {
             continue;
         }
-        let (centre, radius) = gaps.centred(inked(placement), place.at(), ROUNDS);
+        let (centre, radius) = gaps.centred(inked(placement), place.at(), (smallest, ROUNDS));
         if radius < smallest {
             continue;
+        }
+        // Whether the place itself has room when the middle is taken shows only then.
+        if centre.distance(place.at()) > gaps.fineness() {
+            let most = (free + gaps.fineness()).min(radius.next_down());
+            heap.push(Place::new(place.at(), most.max(0.0)));
         }
         if radius < place.clearance() && heap.peek().is_some_and(|next| radius < next.clearance()) {
             // The estimate was too good, or a filler placed since then took some of the room.
@@ -195,16 +200,6 @@ fn fill_field(
             gaps.add_disc(centre, radius);
         } else {
             filler.outlines.iter().for_each(|outline| gaps.add(outline));
-        }
-        // What is left of a long gap begins beside the new filler.
-        let beside = radius + gap + stroke + smallest;
-        for k in 0..8 {
-            let angle = f64::from(k) * std::f64::consts::FRAC_PI_4;
-            let at = centre + beside * Vec2::new(libm::cos(angle), libm::sin(angle));
-            let free = gaps.clearance(inked(placement), at);
-            if free > smallest - gaps.step {
-                heap.push(Place::new(at, free.max(0.0) + gaps.step));
-            }
         }
         fillers.push(filler);
     }

@@ -8,6 +8,7 @@ use crate::geom::polyline;
 use crate::geom::region::Region;
 use crate::shapes::closed;
 use kurbo::{Point, Rect, Vec2};
+use rayon::prelude::*;
 use std::collections::BinaryHeap;
 
 /// Cells of a container at most: a grid for more would be coarser.
@@ -155,14 +156,38 @@ impl<'a> Gaps<'a> {
             if most <= smallest || self.elements[i] {
                 continue;
             }
-            let (above, below) = (i.wrapping_sub(self.columns), i + self.columns);
-            let neighbours = [above, below].into_iter().flat_map(|k| [k.wrapping_sub(1), k, k + 1]);
-            let mut neighbours = neighbours.chain([i.wrapping_sub(1), i + 1]);
-            if neighbours.all(|j| self.estimates.get(j).is_none_or(|&other| other <= free)) {
+            let neighbours = [i.wrapping_sub(1), i + 1, i.wrapping_sub(self.columns), i + self.columns];
+            if neighbours.into_iter().all(|j| self.estimates.get(j).is_none_or(|&other| other <= free)) {
                 heap.push(Place::new(self.middle(i), most));
             }
         }
         heap
+    }
+
+    /// Every place with room for more than `smallest` is nearer than [`Gaps::fineness`] to one of these, whose
+    /// clearances are no less than those of the places near them.
+    pub fn places(&self, inked: Inked, smallest: f64) -> BinaryHeap<Place> {
+        // A cell has room only if its middle has, but for the way from there to its corners.
+        let to_corner = self.step * std::f64::consts::FRAC_1_SQRT_2;
+        let free = |at: Point| self.clearance(inked, at);
+        let quarters = |i: usize| {
+            let middle = self.middle(i);
+            let is_roomy =
+                self.estimates[i] + 2.0 * to_corner > smallest && free(middle) + to_corner > smallest;
+            let ways = if is_roomy { &[(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)][..] } else { &[] };
+            ways.iter().filter_map(move |&(x, y)| {
+                let at = middle + self.step / 4.0 * Vec2::new(x, y);
+                let most = free(at) + self.fineness();
+                (most > smallest).then(|| Place::new(at, most))
+            })
+        };
+        let places: Vec<Place> = (0..self.estimates.len()).into_par_iter().flat_map_iter(quarters).collect();
+        places.into()
+    }
+
+    /// Half a diagonal of a quarter of a cell.
+    pub fn fineness(&self) -> f64 {
+        self.step * std::f64::consts::FRAC_1_SQRT_2 / 2.0
     }
 
     /// Free radius at a place: to the outlines less the gap, to the boundary in full. Negative
@@ -188,22 +213,24 @@ impl<'a> Gaps<'a> {
         (free.min(self.region.distance(at, self.reach)), blocker)
     }
 
-    /// Climbs to the middle of a gap in so many rounds, and tells the clearance there.
-    pub fn centred(&self, inked: Inked, mut at: Point, rounds: usize) -> (Point, f64) {
+    /// Climbs to the middle of a gap in so many rounds, and tells the clearance there; less far if there is
+    /// certainly no middle near with more than `least`.
+    pub fn centred(&self, inked: Inked, mut at: Point, (least, rounds): (f64, usize)) -> (Point, f64) {
         // Four ways alone would not see a ridge that runs between them.
         const WAYS: [[(f64, f64); 4]; 2] = [
             [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)],
             [(0.7, 0.7), (-0.7, -0.7), (0.7, -0.7), (-0.7, 0.7)],
         ];
-        let mut step = self.step;
+        let mut step = self.step / 2.0;
         let (mut best, blocker) = self.clearance_and_blocker(inked, at);
         // What stood in the way before mostly does so again: no need to look for what is nearest.
         let mut blockers = [blocker, None, None, None];
         let mut oldest = 1;
         let blocked = |blockers: &[Option<Blocker>], at: Point, best: f64| {
-            blockers.iter().flatten().any(|&(p, q, owner)| {
-                point_segment(at, p, q) - inked.stroke(owner) - self.gap <= best
-            })
+            blockers
+                .iter()
+                .flatten()
+                .any(|&(p, q, owner)| point_segment(at, p, q) - inked.stroke(owner) - self.gap <= best)
         };
         for _ in 0..rounds {
             let moved = WAYS.into_iter().any(|ways| {
@@ -225,6 +252,10 @@ impl<'a> Gaps<'a> {
                 best > before
             });
             if !moved {
+                // The middle is no farther away than that.
+                if best + step < least {
+                    break;
+                }
                 step /= 2.0;
             }
         }

@@ -106,7 +106,7 @@ fn settled(
     heap: &mut std::collections::BinaryHeap<Place>,
     sizes: &Sizes,
 ) -> Option<(Point, f64)> {
-    let (centre, radius) = gaps.centred(plain(outlines), place.at(), ROUNDS);
+    let (centre, radius) = gaps.centred(plain(outlines), place.at(), (0.0, ROUNDS));
     if radius < NARROWEST * sizes.spacing {
         return None;
     }

@@ -35,9 +35,9 @@ pub(super) struct Stage {
 }
 
 /// Before gaps are filled.
-pub(super) const WIDE: [Stage; 1] = [stage(0.17, 0.14, 8)];
+pub(super) const WIDE: [Stage; 1] = [stage(0.17, 0.14, 6)];
 /// After that, into the corners.
-pub(super) const CLOSE: [Stage; 3] = [stage(0.1, 0.07, 5), stage(0.05, 0.04, 5), stage(0.03, 0.02, 4)];
+pub(super) const CLOSE: [Stage; 3] = [stage(0.1, 0.07, 4), stage(0.05, 0.04, 4), stage(0.03, 0.02, 3)];
 
 const fn stage(radius: f64, most: f64, iterations: usize) -> Stage {
     Stage { radius, most, iterations }
@@ -85,7 +85,10 @@ pub(super) fn mould(
     let mut complete = true;
     for (k, &stage) in stages.iter().enumerate() {
         let skin = |moving: &Moving| Skin::new(moving, &prepared.fields[moving.field], stage);
+        let t0 = std::time::Instant::now();
         let mut skins: Vec<Skin> = all.par_iter().map(skin).collect();
+        eprintln!("{} skins {:?}", stage.radius, t0.elapsed());
+        let t0 = std::time::Instant::now();
         for iteration in 0..stage.iterations {
             let done = iteration as f64 / stage.iterations as f64;
             complete = complete && go_on((k as f64 + done) / stages.len() as f64);
@@ -93,7 +96,10 @@ pub(super) fn mould(
                 pieces.grow(&mut skins, stage);
             }
         }
+        eprintln!("grow {:?}", t0.elapsed());
+        let t0 = std::time::Instant::now();
         all.par_iter_mut().zip(skins).for_each(|(moving, skin)| moving.go(skin));
+        eprintln!("go {:?}", t0.elapsed());
     }
     settle::settle(prepared, templates, placement, fillers, &all);
     complete
@@ -344,20 +350,16 @@ impl<'a> Pieces<'a> {
             let allowed = skin.gives_way.then(|| self.allowances(own, skin, &others, limit))?;
             Some(skin.grown(&allowed, field.params.mould * stage.most * spacing, CLOSED * spacing))
         };
+        let t0 = std::time::Instant::now();
         let grown: Vec<_> = skins.par_iter().enumerate().map(grow).collect();
+        eprintln!("  grow {:?}", t0.elapsed());
         for (skin, grown) in skins.iter_mut().zip(grown) {
             grown.into_iter().for_each(|grown| skin.take(grown));
         }
     }
 
     /// How far each sample of a piece may move, `limit` at most.
-    fn allowances(
-        &self,
-        own: usize,
-        skin: &Skin,
-        others: &Others,
-        limit: f64,
-    ) -> Allowances {
+    fn allowances(&self, own: usize, skin: &Skin, others: &Others, limit: f64) -> Allowances {
         /// Cosine of the widest angle between a normal and what it faces.
         const FACING: f64 = 0.5;
         let field = &self.prepared.fields[skin.field];

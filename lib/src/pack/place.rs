@@ -68,7 +68,8 @@ impl Placed {
             for subpath in subpaths(path) {
                 match is_outer.next() {
                     Some(true) => whole.extend(outer.next().into_iter().flatten()),
-                    _ => whole.extend(bent([&subpath], self.pose, &self.bend, FINER * sizes.tolerance()).remove(0)),
+                    _ => whole
+                        .extend(bent([&subpath], self.pose, &self.bend, FINER * sizes.tolerance()).remove(0)),
                 }
             }
             whole
