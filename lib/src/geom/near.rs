@@ -135,19 +135,28 @@ impl PointTable {
     /// A table over `bounds`; places outside fall into the border cells.
     pub fn new(bounds: Rect, cell: f64, points: &[(Point, u32)]) -> Self {
         let cells = Cells::new(bounds, cell);
-        let mut starts = vec![0; cells.columns * cells.rows + 1];
-        points.iter().for_each(|&(p, _)| starts[cells.index(p) + 1] += 1);
-        for i in 1..starts.len() {
+        let mut table = PointTable { cells, starts: Vec::new(), points: Vec::new() };
+        table.fill(points);
+        table
+    }
+
+    /// Takes other points, in the same memory.
+    pub fn fill(&mut self, points: &[(Point, u32)]) {
+        let PointTable { cells, starts, points: packed } = self;
+        // Two more than cells: what is the end of one while they are counted becomes its start.
+        starts.clear();
+        starts.resize(cells.columns * cells.rows + 2, 0);
+        points.iter().for_each(|&(p, _)| starts[cells.index(p) + 2] += 1);
+        for i in 2..starts.len() {
             starts[i] += starts[i - 1];
         }
-        let mut next = starts.clone();
-        let mut packed = vec![(Point::ZERO, 0); points.len()];
+        packed.clear();
+        packed.resize(points.len(), (Point::ZERO, 0));
         for &(p, owner) in points {
-            let at = &mut next[cells.index(p)];
+            let at = &mut starts[cells.index(p) + 1];
             packed[*at as usize] = (p, owner);
             *at += 1;
         }
-        PointTable { cells, starts, points: packed }
     }
 
     /// The points within `radius`, and some beyond.

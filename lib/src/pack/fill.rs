@@ -15,7 +15,7 @@ use crate::geom::warp::Warp;
 use kurbo::{Affine, BezPath, Point, Vec2};
 
 /// Rounds in which the middle of a gap is found.
-const ROUNDS: usize = 9;
+const ROUNDS: usize = 16;
 /// The largest radius, in spacings: larger reads as an element of another family.
 const LARGEST: f64 = 0.21;
 
@@ -37,7 +37,7 @@ pub(super) const NOOKS: Room = Room { smallest: 0.014, step: 1.0 / 24.0, nooks: 
 
 /// The widest gap that stays as it is, over the mean of all. In channels of one width, three pieces that meet
 /// leave 1.15.
-const WIDEST: f64 = 1.37;
+const WIDEST: f64 = 1.25;
 
 impl Room {
     /// Where fillers may be, and the gap around them.

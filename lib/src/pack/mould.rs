@@ -35,9 +35,9 @@ pub(super) struct Stage {
 }
 
 /// Before gaps are filled.
-pub(super) const WIDE: [Stage; 1] = [stage(0.17, 0.14, 6)];
+pub(super) const WIDE: [Stage; 1] = [stage(0.15, 0.14, 6)];
 /// After that, into the corners.
-pub(super) const CLOSE: [Stage; 3] = [stage(0.1, 0.07, 4), stage(0.05, 0.04, 4), stage(0.03, 0.02, 3)];
+pub(super) const CLOSE: [Stage; 2] = [stage(0.065, 0.065, 4), stage(0.03, 0.025, 3)];
 
 const fn stage(radius: f64, most: f64, iterations: usize) -> Stage {
     Stage { radius, most, iterations }
@@ -82,6 +82,12 @@ pub(super) fn mould(
         .par_iter()
         .map(|filler| Moving { gives_way: filler.motif.gives_way(), ..fine(filler.field, &filler.outlines) });
     let mut all: Vec<Moving> = of_elements.chain(of_fillers).collect();
+    let cell = prepared.fields.iter().map(|field| field.sizes.safe_gap()).fold(0.0, f64::max);
+    let mut others = Others {
+        table: PointTable::new(prepared.bounds, cell, &[]),
+        samples: Vec::new(),
+        gives_way: Vec::new(),
+    };
     let mut complete = true;
     for (k, &stage) in stages.iter().enumerate() {
         let skin = |moving: &Moving| Skin::new(moving, &prepared.fields[moving.field], stage);
@@ -93,7 +99,7 @@ pub(super) fn mould(
             let done = iteration as f64 / stage.iterations as f64;
             complete = complete && go_on((k as f64 + done) / stages.len() as f64);
             if complete {
-                pieces.grow(&mut skins, stage);
+                pieces.grow(&mut skins, &mut others, stage);
             }
         }
         eprintln!("grow {:?}", t0.elapsed());
@@ -288,7 +294,21 @@ struct Grown {
 struct Others {
     /// Samples with the numbers of their pieces.
     table: PointTable,
+    /// The same before they are in the table.
+    samples: Vec<(Point, u32)>,
     gives_way: Vec<bool>,
+}
+
+impl Others {
+    fn see(&mut self, skins: &[Skin]) {
+        self.samples.clear();
+        for (skin, i) in skins.iter().zip(0..) {
+            self.samples.extend(skin.seen.iter().map(|&k| (skin.now[k as usize], i)));
+        }
+        self.table.fill(&self.samples);
+        self.gives_way.clear();
+        self.gives_way.extend(skins.iter().map(|skin| skin.gives_way));
+    }
 }
 
 /// How far the samples of a piece may move.
@@ -331,23 +351,16 @@ impl<'a> Pieces<'a> {
     }
 
     /// One iteration.
-    fn grow(&self, skins: &mut [Skin], stage: Stage) {
+    fn grow(&self, skins: &mut [Skin], others: &mut Others, stage: Stage) {
         let fields = &self.prepared.fields;
-        let mut all: Vec<(Point, u32)> = Vec::new();
-        for (skin, i) in skins.iter().zip(0..) {
-            all.extend(skin.seen.iter().map(|&k| (skin.now[k as usize], i)));
-        }
-        let cell = fields.iter().map(|field| field.sizes.safe_gap()).fold(0.0, f64::max);
-        let others = Others {
-            table: PointTable::new(self.prepared.bounds, cell, &all),
-            gives_way: skins.iter().map(|skin| skin.gives_way).collect(),
-        };
+        others.see(skins);
+        let others = &*others;
         // Each looks only at the last state, so any number of threads gives the same.
         let grow = |(own, skin): (usize, &Skin)| {
             let field = &fields[skin.field];
             let spacing = field.sizes.spacing;
             let limit = STEP.0.min(STEP.1 * stage.most) * spacing;
-            let allowed = skin.gives_way.then(|| self.allowances(own, skin, &others, limit))?;
+            let allowed = skin.gives_way.then(|| self.allowances(own, skin, others, limit))?;
             Some(skin.grown(&allowed, field.params.mould * stage.most * spacing, CLOSED * spacing))
         };
         let t0 = std::time::Instant::now();
