@@ -86,6 +86,8 @@ impl<'a> Gaps<'a> {
     ) -> Self {
         let bounds = region.bounds();
         let step = step.max((bounds.area() / MOST_CELLS).sqrt());
+        // The cells around it are outside, so that its edge is known as one.
+        let bounds = bounds.inflate(2.0 * step, 2.0 * step);
         let gap = field.sizes.safe(gap);
         let (columns, rows) = ((bounds.width() / step) as usize + 1, (bounds.height() / step) as usize + 1);
         let around = bounds.inflate(field.sizes.spacing, field.sizes.spacing);

@@ -23,8 +23,8 @@ use kurbo::{Point, Vec2};
 /// Half widths of small elements, in spacings: narrower ones would be threads beside the others.
 const NARROWEST: f64 = 0.13;
 /// The least length, in spacings, and in half widths of the gap.
-const SHORTEST: f64 = 0.75;
-const SLENDER: f64 = 2.6;
+const SHORTEST: f64 = 0.6;
+const SLENDER: f64 = 1.4;
 /// The farthest that a line runs from the middle of its gap, in half widths of the gap.
 const FARTHEST: f64 = 6.0;
 

@@ -137,6 +137,7 @@ fn close_gaps(
 ) -> (Vec<Filler>, Vec<negative::Shape>, bool) {
     let (prepared, templates) = (ground.prepared, ground.templates);
     let mut fillers = Vec::new();
+    let stages = if motifs.iter().all(Vec::is_empty) { mould::ALONE } else { mould::BETWEEN };
     let mould =
         |placement: &mut Placement, fillers: &mut [Filler], stages: &[_], progress: &mut dyn Progress| {
             mould::mould(prepared, templates, placement, fillers, stages, |done| progress.step("mould", done))
@@ -144,9 +145,9 @@ fn close_gaps(
     let fill = |placement: &mut Placement, fillers: &mut Vec<_>, room, progress: &mut dyn Progress| {
         fill::fill(ground, motifs, placement, fillers, room, |done| progress.step("fill", done))
     };
-    let complete = mould(placement, &mut [], &mould::WIDE, progress)
+    let complete = mould(placement, &mut [], &stages.wide, progress)
         && fill(placement, &mut fillers, fill::GAPS, progress)
-        && mould(placement, &mut fillers, &mould::CLOSE, progress)
+        && mould(placement, &mut fillers, &stages.close, progress)
         && fill(placement, &mut fillers, fill::NOOKS, progress);
     if !complete {
         return (fillers, Vec::new(), false);

@@ -34,10 +34,18 @@ pub(super) struct Stage {
     iterations: usize,
 }
 
-/// Before gaps are filled.
-pub(super) const WIDE: [Stage; 1] = [stage(0.15, 0.14, 6)];
-/// After that, into the corners.
-pub(super) const CLOSE: [Stage; 2] = [stage(0.065, 0.065, 4), stage(0.03, 0.025, 3)];
+/// Before gaps are filled, and after that, into the corners.
+pub(super) struct Stages {
+    pub wide: [Stage; 1],
+    pub close: [Stage; 2],
+}
+
+/// Where the widest gaps are for fillers.
+pub(super) const BETWEEN: Stages =
+    Stages { wide: [stage(0.15, 0.14, 6)], close: [stage(0.065, 0.065, 4), stage(0.03, 0.025, 3)] };
+/// Where there will be none: outlines have to go farther.
+pub(super) const ALONE: Stages =
+    Stages { wide: [stage(0.25, 0.25, 8)], close: [stage(0.12, 0.1, 5), stage(0.05, 0.05, 5)] };
 
 const fn stage(radius: f64, most: f64, iterations: usize) -> Stage {
     Stage { radius, most, iterations }
