@@ -99,10 +99,7 @@ pub(super) fn mould(
     let mut complete = true;
     for (k, &stage) in stages.iter().enumerate() {
         let skin = |moving: &Moving| Skin::new(moving, &prepared.fields[moving.field], stage);
-        let t0 = std::time::Instant::now();
         let mut skins: Vec<Skin> = all.par_iter().map(skin).collect();
-        eprintln!("{} skins {:?}", stage.radius, t0.elapsed());
-        let t0 = std::time::Instant::now();
         for iteration in 0..stage.iterations {
             let done = iteration as f64 / stage.iterations as f64;
             complete = complete && go_on((k as f64 + done) / stages.len() as f64);
@@ -110,10 +107,7 @@ pub(super) fn mould(
                 pieces.grow(&mut skins, &mut others, stage);
             }
         }
-        eprintln!("grow {:?}", t0.elapsed());
-        let t0 = std::time::Instant::now();
         all.par_iter_mut().zip(skins).for_each(|(moving, skin)| moving.go(skin));
-        eprintln!("go {:?}", t0.elapsed());
     }
     settle::settle(prepared, templates, placement, fillers, &all);
     complete
@@ -371,9 +365,7 @@ impl<'a> Pieces<'a> {
             let allowed = skin.gives_way.then(|| self.allowances(own, skin, others, limit))?;
             Some(skin.grown(&allowed, field.params.mould * stage.most * spacing, CLOSED * spacing))
         };
-        let t0 = std::time::Instant::now();
         let grown: Vec<_> = skins.par_iter().enumerate().map(grow).collect();
-        eprintln!("  grow {:?}", t0.elapsed());
         for (skin, grown) in skins.iter_mut().zip(grown) {
             grown.into_iter().for_each(|grown| skin.take(grown));
         }
