@@ -7,9 +7,10 @@
 
 use crate::geom::boolean::{Contour, area, is_outer, signed_area, simplified};
 use crate::geom::distance::{cover, nearest_marked, runs, squared_distances};
+use crate::geom::near::SegmentGrid;
 use crate::ink::area_of;
 use crate::shapes::Shapes;
-use kurbo::{Point, Rect};
+use kurbo::{Point, Rect, Vec2};
 use rinceau_format::{Artwork, Error, Part, Scene};
 use std::collections::BTreeMap;
 
@@ -34,12 +35,24 @@ pub struct Raster {
     pieces: u32,
     /// How often a piece covers a cell of another.
     doubled: usize,
+    /// The outlines of all that, from the corner of the raster.
+    outlines: Vec<Contour>,
+}
+
+/// Distances to what is drawn or outside.
+struct Widths {
+    /// The cells in gaps, and their distances.
+    cells: Vec<usize>,
+    all: Vec<f64>,
+    /// Distances in the middle of gaps.
+    middle: Vec<f64>,
 }
 
 /// Measures an artwork by name:
 /// `coverage`, share of the containers that is drawn on;
 /// `mean_gap`, twice the mean distance in the gaps: half their width, if they are channels;
-/// `largest_gap`, radius of the largest empty disc over `mean_gap` (1 is perfect);
+/// `largest_gap`, radius of the largest empty disc over `mean_gap` (1 is perfect); no disc crosses the outline of a
+/// container;
 /// `gap_cv`, coefficient of variation of gap widths, where two different pieces, or a piece and
 /// the outline, are equally near;
 /// `boundary`, share of the containers' outline that has something drawn or fixed within a gap of it (twice
@@ -52,7 +65,7 @@ pub struct Raster {
 /// Errors: a container that cannot be read; there is nothing to measure in.
 pub fn measure(scene: &Scene, artwork: &Artwork) -> Result<BTreeMap<String, f64>, Error> {
     let (_, raster) = raster_of(scene, artwork, CELLS)?;
-    let finer = (FINE * raster.cell / half_width(&raster.gaps().0).max(f64::MIN_POSITIVE)).powi(2);
+    let finer = (FINE * raster.cell / half_width(&raster.gaps().all).max(f64::MIN_POSITIVE)).powi(2);
     let cells = (finer * CELLS).clamp(CELLS, MOST_CELLS);
     Ok(if cells > CELLS { raster_of(scene, artwork, cells)?.1.measure() } else { raster.measure() })
 }
@@ -120,15 +133,18 @@ impl Raster {
             owner: vec![0; cells],
             pieces: 0,
             doubled: 0,
+            outlines: Vec::new(),
         }
     }
 
     fn add_inside(&mut self, origin: Point, contours: &[Contour]) {
+        self.add_outlines(origin, contours);
         cover(contours, origin, self.cell, self.columns, &mut self.inside);
     }
 
     /// Takes out what is fixed, with the small holes in it.
     fn add_fixed(&mut self, origin: Point, contours: &[Contour]) {
+        self.add_outlines(origin, contours);
         runs(contours, origin, self.cell, (self.columns, self.inside.len()), |run| {
             self.inside[run].fill(false)
         });
@@ -136,6 +152,7 @@ impl Raster {
 
     /// Adds a piece of ink.
     fn add_piece(&mut self, origin: Point, contours: &[Contour]) {
+        self.add_outlines(origin, contours);
         self.pieces += 1;
         runs(contours, origin, self.cell, (self.columns, self.ink.len()), |run| {
             self.doubled += self.owner[run.clone()].iter().filter(|&&owner| owner != 0).count();
@@ -144,8 +161,42 @@ impl Raster {
         });
     }
 
+    fn add_outlines(&mut self, origin: Point, contours: &[Contour]) {
+        let moved = |contour: &Contour| contour.iter().map(|&p| p - origin.to_vec2()).collect();
+        self.outlines.extend(contours.iter().map(moved));
+    }
+
+    /// The radius of the largest empty disc, exact where cells say that it may be: those are off by a part of
+    /// their size.
+    fn largest(&self, widths: &Widths) -> f64 {
+        let most = widths.all.iter().copied().fold(0.0, f64::max);
+        let rows = self.ink.len() / self.columns;
+        let size = |count: usize| count as f64 * self.cell;
+        let bounds = Rect::new(0.0, 0.0, size(self.columns), size(rows));
+        let mut edges = SegmentGrid::new(bounds, most.max(self.cell));
+        self.outlines.iter().for_each(|outline| edges.insert_contour(outline, 0));
+        let free = |at: Point| edges.distance(at, most + 4.0 * self.cell);
+        let climbed = |i: usize| {
+            let middle = |i: usize| (i as f64 + 0.5) * self.cell;
+            let mut at = Point::new(middle(i % self.columns), middle(i / self.columns));
+            let (mut best, mut step) = (free(at), self.cell / 2.0);
+            while step > self.cell / 32.0 {
+                let ways = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
+                let places = ways.map(|(x, y)| at + step * Vec2::new(x, y));
+                let widest = places.into_iter().max_by(|&a, &b| free(a).total_cmp(&free(b)));
+                match widest.filter(|&next| free(next) > best) {
+                    Some(next) => (at, best) = (next, free(next)),
+                    None => step /= 2.0,
+                }
+            }
+            best
+        };
+        let may_be = widths.cells.iter().zip(&widths.all).filter(|(_, d)| **d >= most - self.cell);
+        may_be.map(|(&i, _)| climbed(i)).fold(0.0, f64::max)
+    }
+
     /// Distance to what is drawn or outside, of every cell in a gap.
-    fn gaps(&self) -> (Vec<f64>, Vec<f64>) {
+    fn gaps(&self) -> Widths {
         let taken: Vec<bool> =
             self.inside.iter().zip(&self.ink).map(|(&inside, &ink)| ink || !inside).collect();
         let (squared, nearest) = nearest_marked(&taken, self.columns);
@@ -162,7 +213,7 @@ impl Raster {
                 .any(|j| taken.get(j) == Some(&false) && owner(i) != owner(j))
         };
         let middle = in_gap.iter().filter(is_middle).map(|&i| distance(i)).collect();
-        (all, middle)
+        Widths { cells: in_gap, all, middle }
     }
 
     /// Cells and radii of discs in the gaps, the largest first, none with its middle deep in another.
@@ -249,12 +300,13 @@ impl Raster {
     /// The measures.
     pub fn measure(&self) -> BTreeMap<String, f64> {
         let inside = self.inside.iter().filter(|&&inside| inside).count() as f64;
-        let (distances, middles) = self.gaps();
+        let widths = self.gaps();
+        let (distances, middles) = (&widths.all, &widths.middle);
         let mean = |values: &[f64]| values.iter().sum::<f64>() / (values.len() as f64).max(1.0);
         let empty = distances.len() as f64 / inside.max(1.0);
-        let half_width = half_width(&distances);
-        let largest = distances.iter().copied().fold(0.0, f64::max);
-        let middle = mean(&middles);
+        let half_width = half_width(distances);
+        let largest = self.largest(&widths);
+        let middle = mean(middles);
         let spread = mean(&middles.iter().map(|d| (d - middle) * (d - middle)).collect::<Vec<_>>()).sqrt();
         let share = |x: f64, y: f64| if y > 0.0 { x / y } else { 0.0 };
         BTreeMap::from([
@@ -266,7 +318,7 @@ impl Raster {
             ("overlap".to_owned(), self.doubled as f64 / inside.max(1.0)),
             ("spill".to_owned(), self.spilt() as f64 / inside.max(1.0)),
             ("grown_overlap".to_owned(), self.overlap_of_grown(0.5 * half_width)),
-            ("evenness".to_owned(), evenness(&distances, half_width, largest)),
+            ("evenness".to_owned(), evenness(distances, half_width)),
         ])
     }
 }
@@ -277,8 +329,9 @@ fn half_width(distances: &[f64]) -> f64 {
 }
 
 /// 1 less the area between SCP and the line of channels of one width, over that line's area.
-fn evenness(distances: &[f64], half_width: f64, largest: f64) -> f64 {
+fn evenness(distances: &[f64], half_width: f64) -> f64 {
     const STEPS: usize = 400;
+    let largest = distances.iter().copied().fold(0.0, f64::max);
     if half_width <= 0.0 {
         return 1.0;
     }
@@ -316,7 +369,7 @@ mod tests {
                 raster.add_piece(Point::ORIGIN, &[square(at(column), at(row), a)]);
             }
         }
-        let (distances, _) = raster.gaps();
+        let distances = raster.gaps().all;
         let inside = raster.inside.iter().filter(|&&inside| inside).count() as f64;
         for (r, expected) in [(0.0, 0.4898), (1.0, 0.3837), (2.0, 0.2697), (3.0, 0.1476)] {
             let scp = distances.iter().filter(|&&d| d >= r).count() as f64 / inside;

@@ -37,7 +37,7 @@ pub(super) const NOOKS: Room = Room { smallest: 0.014, step: 1.0 / 24.0, nooks: 
 
 /// The widest gap that stays as it is, over the mean of all. In channels of one width, three pieces that meet
 /// leave 1.15.
-const WIDEST: f64 = 1.25;
+const WIDEST: f64 = 1.16;
 
 impl Room {
     /// Where fillers may be, and the gap around them.
