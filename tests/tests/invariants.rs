@@ -183,3 +183,33 @@ fn out_of_time_gives_the_best_so_far_or_a_sentence() {
     }
     assert!(partial > 0 && whole > 0, "{partial} partial, {whole} whole");
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: cases(8), failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// However far outlines give way, whatever fills the gaps and however narrow those are: pieces keep apart, stay
+    /// inside and do not fold, and what grows covers more.
+    #[test]
+    fn moulded_pieces_keep_apart(
+        outer in waves(), seed in 0..1000u64, mould in 0.1..1.0f64, gap in 1.0..9.0f64, filled in any::<bool>(),
+    ) {
+        let shape = blob((200.0, 200.0), 180.0, &outer);
+        let (_, scene) = read(format!(
+            "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 400 400'><path class='rinceau-container' d='{shape}'/></svg>"
+        ));
+        let fillers = if filled { "pebbles" } else { "none" };
+        let with = |mould: f64| {
+            let params = [
+                ("spacing", "52".to_owned()),
+                ("min-gap", gap.to_string()),
+                ("mould", mould.to_string()),
+                ("fillers", fillers.to_owned()),
+            ];
+            pack(&scene, &params, seed).unwrap()
+        };
+        let moulded = with(mould);
+        let outline = scene.containers.iter().flat_map(|container| contours(&container.outlines[0].path));
+        check(&moulded, &Region::new(outline.collect()).unwrap(), &[], (gap, gap));
+        prop_assert!(filled || moulded.counts["coverage"] > with(0.0).counts["coverage"]);
+    }
+}

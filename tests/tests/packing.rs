@@ -357,3 +357,25 @@ fn awkward_elements_are_bent() {
         }
     }
 }
+
+/// What the samples are known for: gaps of one width, also against what is first placed.
+#[test]
+fn samples_are_filled_evenly() {
+    for name in ["cat", "heart", "leaf", "lion", "unicorn"] {
+        let (_, scene) =
+            read(std::fs::read(support::root().join(format!("samples/pack/{name}.svg"))).unwrap());
+        let measured = |params: &[(&str, String)]| {
+            rinceau::quality::measure(&scene, &pack(&scene, params, 1).unwrap()).unwrap()
+        };
+        let whole = measured(&[]);
+        assert!(whole["largest_gap"] <= 1.6, "{name}: {whole:?}");
+        assert!(whole["coverage"] >= 0.6 && whole["boundary"] >= 0.9, "{name}: {whole:?}");
+        assert!(whole["evenness"] >= 0.85, "{name}: {whole:?}");
+        assert_eq!((whole["overlap"], whole["spill"]), (0.0, 0.0), "{name}");
+        // Refinement alone, too.
+        let none = ("fillers", "none".to_owned());
+        let (plain, refined) = (measured(&[none.clone(), ("iterations", "0".to_owned())]), measured(&[none]));
+        assert!(refined["gap_cv"] <= 0.7 * plain["gap_cv"], "{name}: {refined:?} {plain:?}");
+        assert!(refined["evenness"] > plain["evenness"], "{name}: {refined:?} {plain:?}");
+    }
+}

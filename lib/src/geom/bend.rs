@@ -18,6 +18,7 @@ use crate::geom::polyline::left_of;
 use crate::geom::spline::{Curve, Profile};
 use crate::geom::warp::Warp;
 use kurbo::{BezPath, CubicBez, ParamCurve, ParamCurveDeriv, PathEl, PathSeg, Point, Vec2};
+use std::cell::Cell;
 
 /// How often one curve of the artwork is halved at most: 64 pieces bend any curve that a
 /// person draws; more would be noise in the template.
@@ -97,9 +98,9 @@ impl Bend {
 
     /// Bends a path in (u, v). Curves stay Béziers: each is split until a cubic with the
     /// mapped ends and end derivatives lies within `tolerance` of the mapped curve, so joins
-    /// that were smooth stay smooth. Appends to `out`.
-    pub fn path(&self, path: &BezPath, tolerance: f64, out: &mut BezPath) {
-        map_path(path, |at| self.unwarped(at), &self.warps, tolerance, out);
+    /// that were smooth stay smooth. Appends to `out`. False if warps turn it over where it was looked at.
+    pub fn path(&self, path: &BezPath, tolerance: f64, out: &mut BezPath) -> bool {
+        map_path(path, |at| self.unwarped(at), &self.warps, tolerance, out)
     }
 
     /// True if the map turns nothing over at any of these places in (u, v). It never does without warps.
@@ -111,12 +112,11 @@ impl Bend {
     }
 }
 
-/// A path that only warps move.
-pub fn warped(path: &BezPath, warps: &[Warp], tolerance: f64) -> BezPath {
+/// A path that only warps move. `None` if they turn it over where it was looked at.
+pub fn warped(path: &BezPath, warps: &[Warp], tolerance: f64) -> Option<BezPath> {
     let map = |at| Mapped { p: at, du: Vec2::new(1.0, 0.0), dv: Vec2::new(0.0, 1.0) };
     let mut out = BezPath::new();
-    map_path(path, map, warps, tolerance, &mut out);
-    out
+    map_path(path, map, warps, tolerance, &mut out).then_some(out)
 }
 
 impl Mapped {
@@ -128,18 +128,22 @@ impl Mapped {
     }
 }
 
-/// Maps a path, and warps it.
+/// Maps a path, and warps it. False if it is turned over where it was looked at.
 fn map_path(
     path: &BezPath,
     map: impl Fn(Point) -> Mapped,
     warps: &[Warp],
     tolerance: f64,
     out: &mut BezPath,
-) {
+) -> bool {
     let mut start = Point::ZERO;
     let mut at = Point::ZERO;
+    let keeps_sense = Cell::new(true);
     let place = |at: Point| warps.iter().fold(map(at).p, |p, warp| warp.point(p));
-    let curve = |cubic: CubicBez, out: &mut BezPath| map_curve(cubic, (&map, &place), warps, tolerance, out);
+    let curve = |cubic: CubicBez, out: &mut BezPath| {
+        let keeps = map_curve(cubic, (&map, &place), warps, tolerance, out);
+        keeps_sense.set(keeps_sense.get() && keeps);
+    };
     for el in path.elements() {
         match *el {
             PathEl::MoveTo(p) => {
@@ -167,6 +171,7 @@ fn map_path(
             }
         }
     }
+    keeps_sense.get()
 }
 
 fn map_curve(
@@ -175,11 +180,13 @@ fn map_curve(
     warps: &[Warp],
     tolerance: f64,
     out: &mut BezPath,
-) {
+) -> bool {
     let deriv = source.deriv();
-    let end = |t: f64| {
+    let mut keeps_sense = true;
+    let mut end = |t: f64| {
         let (at, d) = (source.eval(t), deriv.eval(t));
         let mapped = map(at).warped(warps);
+        keeps_sense &= warps.is_empty() || mapped.du.cross(mapped.dv) > 0.0;
         (mapped.p, d.x * mapped.du + d.y * mapped.dv)
     };
     let mut pieces = vec![(0.0, end(0.0), 1.0, end(1.0), 0)];
@@ -205,6 +212,7 @@ fn map_curve(
             pieces.push((t0, e0, middle, m, halvings + 1));
         }
     }
+    keeps_sense
 }
 
 /// The width before pulling in that ends at `limit` after it; `limit` times `most` at most.

@@ -146,8 +146,8 @@ impl Ties {
             near(i).for_each(|(j, _)| is_moved[j as usize] = true);
         }
         let mut ties = Ties { starts: vec![0], near: Vec::new() };
-        for i in 0..samples.len() {
-            if is_moved[i] {
+        for (i, &is_moved) in is_moved.iter().enumerate() {
+            if is_moved {
                 let start = ties.near.len();
                 ties.near.extend(near(i).map(|(j, squared)| (j, weight(squared / squared_radius))));
                 let total = fade + ties.near[start..].iter().map(|(_, w)| w).sum::<f64>();

@@ -337,21 +337,33 @@ fn unfolded(
     }
 }
 
-/// Paths of a template bent into place.
+/// Paths of a template bent into place. Without warps nothing is turned over.
 pub(super) fn bent<'a>(
     paths: impl IntoIterator<Item = &'a BezPath>,
     pose: Pose,
     bend: &Bend,
     tolerance: f64,
 ) -> Vec<BezPath> {
+    bent_and_checked(paths, pose, bend, tolerance).0
+}
+
+/// The same, and false if warps turn over what they were looked at for.
+pub(super) fn bent_and_checked<'a>(
+    paths: impl IntoIterator<Item = &'a BezPath>,
+    pose: Pose,
+    bend: &Bend,
+    tolerance: f64,
+) -> (Vec<BezPath>, bool) {
     let (u0, du) = if pose.along { (1.0, -1.0) } else { (0.0, 1.0) };
     let to_pose = Affine::new([du, 0.0, 0.0, if pose.across { -1.0 } else { 1.0 }, u0, 0.0]);
+    let mut keeps_sense = true;
     let bend_one = |path: &BezPath| {
         let mut out = BezPath::new();
-        bend.path(&(to_pose * path.clone()), tolerance, &mut out);
+        keeps_sense &= bend.path(&(to_pose * path.clone()), tolerance, &mut out);
         out
     };
-    paths.into_iter().map(bend_one).collect()
+    let all = paths.into_iter().map(bend_one).collect();
+    (all, keeps_sense)
 }
 
 fn outlines(path: &BezPath, sizes: &Sizes) -> impl Iterator<Item = Contour> + use<> {

@@ -4,7 +4,7 @@ use super::choose::Pose;
 use super::fill::Filler;
 use super::mould::{Moving, Pieces};
 use super::params::Sizes;
-use super::place::{FINER, Placement, bent, is_inside, sides, silhouette};
+use super::place::{FINER, Placement, bent_and_checked, is_inside, sides, silhouette};
 use super::prepare::Prepared;
 use super::template::Template;
 use crate::geom::bend::{Bend, warped};
@@ -120,15 +120,18 @@ const NARROWER: f64 = 0.5;
 /// An element with its new outlines. `None` if it is turned over somewhere.
 fn of_element(template: &Template, pose: Pose, bend: Bend, sizes: &Sizes) -> Option<Moulded> {
     let places = template.parts.iter().flat_map(|(path, _)| path.segments()).flat_map(|segment| {
-        // Enough to see a fold, which is as wide as a push is felt.
-        (0..4).map(move |k| segment.eval(f64::from(k) / 4.0))
+        // Outlines, where pushes are, are looked at more closely below.
+        (0..2).map(move |k| segment.eval(f64::from(k) / 2.0))
     });
     let posed =
         |p: Point| Point::new(if pose.along { 1.0 - p.x } else { p.x }, if pose.across { -p.y } else { p.y });
     if !bend.keeps_sense(places.map(posed)) {
         return None;
     }
-    let outer = bent(&template.outer, pose, &bend, FINER * sizes.tolerance());
+    let (outer, keeps_sense) = bent_and_checked(&template.outer, pose, &bend, FINER * sizes.tolerance());
+    if !keeps_sense {
+        return None;
+    }
     let outlines: Vec<Contour> = outer
         .iter()
         .flat_map(|path| flatten(path, CLOSER * sizes.tolerance()))
@@ -142,7 +145,7 @@ fn of_element(template: &Template, pose: Pose, bend: Bend, sizes: &Sizes) -> Opt
 /// A pebble with its new outline.
 fn of_filler(filler: &Filler, warps: Vec<Warp>, sizes: &Sizes) -> Option<Moulded> {
     let warps: Vec<Warp> = filler.warps.iter().cloned().chain(warps).collect();
-    let path = warped(&filler.plain(), &warps, FINER * sizes.tolerance());
+    let path = warped(&filler.plain(), &warps, FINER * sizes.tolerance())?;
     let outlines: Vec<Contour> =
         flatten(&path, CLOSER * sizes.tolerance()).into_iter().map(|subpath| subpath.points).collect();
     let is_simple = outlines.iter().all(|outline| self_crossings(outline, 1).is_empty());

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 pub const SLACK: f64 = 0.01;
 
 /// How far chords lie from the curves they stand for.
-const FLATNESS: f64 = 0.004;
+pub const FLATNESS: f64 = 0.004;
 
 /// A placed piece: its outlines as closed polylines.
 pub type Piece = Vec<Vec<Point>>;

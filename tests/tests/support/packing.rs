@@ -5,6 +5,7 @@
 use super::geometry::*;
 use kurbo::Point;
 use rinceau::geom::boolean::{area, signed_area, simplified};
+use rinceau::geom::flatten::flatten;
 use rinceau::geom::near::crosses;
 use rinceau::geom::region::Region;
 use rinceau_format::{Artwork, Error, Scene};
@@ -48,10 +49,18 @@ pub fn check(artwork: &Artwork, container: &Region, clear: &[Piece], gap: (f64, 
             assert!(distance(piece, fixed, gap) >= gap - SLACK - 0.02 * gap);
         }
     }
-    for contour in elements.iter().flatten() {
+    for contour in &closed_contours(artwork, "elements") {
         let folded = folded_area(contour);
         assert!(folded <= 1e-5 * signed_area(contour).abs() + TINY, "an outline folds over {folded}");
     }
+}
+
+/// The closed outlines of a group: a vein has none.
+fn closed_contours(artwork: &Artwork, group: &str) -> Piece {
+    let items = artwork.group(group).map(|group| group.items.as_slice()).unwrap_or_default();
+    let parts = items.iter().flat_map(|item| &item.parts);
+    let subpaths = parts.flat_map(|part| flatten(&(part.transform * part.path.clone()), FLATNESS));
+    subpaths.filter(|subpath| subpath.has_close).map(|subpath| subpath.points).collect()
 }
 
 /// Area that a contour winds around the wrong way, or more than once. Chords of two curves
