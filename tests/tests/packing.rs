@@ -358,6 +358,16 @@ fn awkward_elements_are_bent() {
     }
 }
 
+/// Lines along shortest paths may end up in the middle of another element, where next to no gap is asked for.
+#[test]
+fn lines_along_shortest_paths_nest_nothing() {
+    let (_, scene) = read(std::fs::read(support::root().join("samples/pack/bird.svg")).unwrap());
+    let params = [("shift", "paper"), ("min-gap", "0.01"), ("mould", "0"), ("fillers", "none")];
+    let params = params.map(|(name, value)| (name, value.to_owned()));
+    let measures = rinceau::quality::measure(&scene, &pack(&scene, &params, 1).unwrap()).unwrap();
+    assert_eq!(measures["overlap"], 0.0, "{measures:?}");
+}
+
 /// What the samples are known for: gaps of one width, also against what is first placed.
 #[test]
 fn samples_are_filled_evenly() {

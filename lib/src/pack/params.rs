@@ -82,6 +82,11 @@ crate::params! {
 }
 
 impl Params {
+    /// True if lines are shifted along shortest paths, as in the paper.
+    pub fn moves_by_paths(&self) -> bool {
+        self.shift == "paper"
+    }
+
     /// True if the gaps become shapes themselves.
     pub(super) fn has_shapes(&self) -> bool {
         self.fillers.split_whitespace().any(|word| word == "shapes")

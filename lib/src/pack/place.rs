@@ -149,7 +149,10 @@ impl Placement {
             for (body, first) in ahead.into_iter().zip(firsts) {
                 let settled = first.and_then(|(i, candidate)| {
                     // It has been checked against the rest already.
-                    if self.keeps_apart(&candidate.outlines, candidate.stroke, context(body).1) {
+                    let field = context(body).1;
+                    if self.keeps_apart(&candidate.outlines, candidate.stroke, field)
+                        && !self.nests(&candidate.outlines, field)
+                    {
                         return Some(candidate);
                     }
                     from(self, body, i + 1).map(|(_, candidate)| candidate)
@@ -164,6 +167,7 @@ impl Placement {
 
     fn goes(&self, candidate: &Candidate, template: &Template, field: &Field) -> bool {
         self.keeps_apart(&candidate.outlines, candidate.stroke, field)
+            && !self.nests(&candidate.outlines, field)
             && !folded(template, candidate.pose, &candidate.bend)
     }
 
@@ -242,6 +246,21 @@ impl Placement {
         outlines
             .iter()
             .all(|outline| is_inside(outline, margin, &field.region) && self.is_clear(outline, gap))
+    }
+
+    /// True if an element lies in another, or another in it, far enough from the outline. Lines that move as a
+    /// whole stay between their neighbours; those of the paper may end up in the middle of one.
+    fn nests(&self, outlines: &[Contour], field: &Field) -> bool {
+        if !field.params.moves_by_paths() {
+            return false;
+        }
+        let bounds = |outlines: &[Contour]| polyline::bounds(outlines.iter().flatten().copied());
+        let holds = |outer: &[Contour], inner: &[Contour]| {
+            let Some(&first) = inner.first().and_then(|contour| contour.first()) else { return false };
+            bounds(outer).is_some_and(|bounds| bounds.contains(first))
+                && Region::new(outer.to_vec()).is_some_and(|region| region.contains(first))
+        };
+        self.placed.iter().any(|placed| holds(&placed.outlines, outlines) || holds(outlines, &placed.outlines))
     }
 
     fn is_clear(&self, outline: &Contour, gap: f64) -> bool {

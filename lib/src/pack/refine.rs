@@ -248,7 +248,7 @@ fn moved(
         let template = &templates[body.fit.pose.template];
         let offsets = offsets(&room, template, body.fit.pose, limit);
         let tangents = polyline::tangents(&points, false);
-        if field.params.shift == "paper" {
+        if field.params.moves_by_paths() {
             let widths = [0, 1].map(|side| room[side].iter().copied().fold(0.0, f64::max));
             let ends = [offsets[0], offsets[BINS - 1]];
             points = polyline::resample(&shift::path(&points, ends, widths, limit, flow), BINS);
