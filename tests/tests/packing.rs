@@ -368,6 +368,15 @@ fn lines_along_shortest_paths_nest_nothing() {
     assert_eq!(measures["overlap"], 0.0, "{measures:?}");
 }
 
+/// A notch in the outline of the bird is narrower than any grid that gaps are looked for on.
+#[test]
+fn fillers_stay_out_of_slits() {
+    let (_, scene) = read(std::fs::read(support::root().join("samples/pack/bird.svg")).unwrap());
+    let params = [("min-gap", "0.01"), ("fillers", "dots")].map(|(name, value)| (name, value.to_owned()));
+    let measures = rinceau::quality::measure(&scene, &pack(&scene, &params, 1).unwrap()).unwrap();
+    assert_eq!((measures["overlap"], measures["spill"]), (0.0, 0.0), "{measures:?}");
+}
+
 /// What the samples are known for: gaps of one width, also against what is first placed.
 #[test]
 fn samples_are_filled_evenly() {

@@ -135,8 +135,11 @@ impl<'a> Gaps<'a> {
                 (to_elements - gap).min(to_outside)
             })
             .collect();
+        // A slit may be so narrow that no cell has its middle in it.
+        let mut passed = outside;
+        region.contours().iter().for_each(|contour| self.mark(contour, &mut passed));
         let far = (self.reach / step + 2.0).powi(2);
-        self.inner = to_outside.iter().map(|&squared| squared > far).collect();
+        self.inner = squared_distances(&passed, columns).into_iter().map(|squared| squared > far).collect();
         let length = |contour: &Contour| polyline::length(&closed(contour));
         let strip = edge * region.contours().iter().map(length).sum::<f64>();
         self.emptiness = (step * step * count + strip, step * step * sum + strip * edge / 2.0);
@@ -281,6 +284,18 @@ impl<'a> Gaps<'a> {
     /// Covers what a contour encloses.
     pub fn add(&mut self, contour: &Contour) {
         cover(std::slice::from_ref(contour), self.origin, self.step, self.columns, &mut self.elements);
+    }
+
+    /// Marks the cells that a contour passes.
+    fn mark(&self, contour: &Contour, marked: &mut [bool]) {
+        for (a, b) in contour.iter().zip(contour.iter().cycle().skip(1)) {
+            let pieces = (a.distance(*b) / (0.5 * self.step)).ceil().clamp(1.0, 1e4);
+            for k in 0..pieces as usize {
+                if let Some(cell) = self.cell(a.lerp(*b, k as f64 / pieces)) {
+                    marked[cell] = true;
+                }
+            }
+        }
     }
 
     fn cell(&self, at: Point) -> Option<usize> {

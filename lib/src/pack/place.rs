@@ -260,7 +260,9 @@ impl Placement {
             bounds(outer).is_some_and(|bounds| bounds.contains(first))
                 && Region::new(outer.to_vec()).is_some_and(|region| region.contains(first))
         };
-        self.placed.iter().any(|placed| holds(&placed.outlines, outlines) || holds(outlines, &placed.outlines))
+        self.placed
+            .iter()
+            .any(|placed| holds(&placed.outlines, outlines) || holds(outlines, &placed.outlines))
     }
 
     fn is_clear(&self, outline: &Contour, gap: f64) -> bool {
