@@ -80,8 +80,7 @@ pub(super) fn mould(
     // Between stages, outlines are moved corner by corner; only what comes of all is bent anew and checked.
     let fine = |field: usize, outlines: &[Contour]| {
         let step = CORNERS * prepared.fields[field].sizes.spacing;
-        let contours = outlines.iter().map(|contour| divided(contour, step)).collect();
-        let contours: Vec<Contour> = contours;
+        let contours: Vec<Contour> = outlines.iter().map(|contour| divided(contour, step)).collect();
         let held = contours.iter().map(|contour| vec![Held::default(); contour.len()]).collect();
         Moving { field, gives_way: true, contours, held, warps: Vec::new() }
     };
