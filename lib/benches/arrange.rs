@@ -7,6 +7,10 @@ use rinceau::{Deadline, GENERATORS, Generator, Rng};
 use rinceau_format::{Document, Scene, Selection};
 use std::fmt::Write;
 
+/// The program's.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() {
     divan::main();
 }

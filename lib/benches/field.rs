@@ -11,6 +11,10 @@ use rinceau::geom::region::Region;
 use rinceau::geom::spline::{Curve, Profile};
 use rinceau::rng::Rng;
 
+/// The program's.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() {
     divan::main();
 }

@@ -4,6 +4,10 @@
 use rinceau::{Deadline, GENERATORS, Values};
 use rinceau_format::{Document, Scene, Selection};
 
+/// The program's.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() {
     divan::main();
 }

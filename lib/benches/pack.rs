@@ -5,6 +5,10 @@ use rinceau::params::Values;
 use rinceau::{Deadline, GENERATORS};
 use rinceau_format::{Document, Scene, Selection};
 
+/// The program's.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() {
     divan::main();
 }

@@ -10,6 +10,10 @@ use std::io::Write;
 
 const DEPTHS: [usize; 5] = [10, 13, 17, 20, 23];
 
+/// The program's.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() {
     for depth in DEPTHS {
         let n = (1_u64 << depth) - 1;

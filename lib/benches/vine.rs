@@ -5,6 +5,10 @@ use rinceau::params::Values;
 use rinceau::{Deadline, GENERATORS, Generator};
 use rinceau_format::{Document, Scene, Selection};
 
+/// The program's.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() {
     for n in SIZES {
         let artwork = filling(n);

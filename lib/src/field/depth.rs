@@ -1,5 +1,6 @@
 //! How far places are from the edge of a region.
 
+use crate::field::near::NearMap;
 use crate::geom::distance::{covered, squared_distances};
 use crate::geom::region::Region;
 use kurbo::Point;
@@ -13,7 +14,7 @@ pub(super) struct Depth {
     rows: usize,
     inside: Vec<bool>,
     /// From the middle of each cell to the nearest cell that the edge passes, in units.
-    distance: Vec<f64>,
+    distance: Vec<f32>,
 }
 
 impl Depth {
@@ -37,7 +38,8 @@ impl Depth {
                 }
             }
         }
-        let distance = squared_distances(&passed, columns).into_iter().map(|squared| squared.sqrt() * cell);
+        let distance =
+            squared_distances(&passed, columns).into_iter().map(|squared| (squared.sqrt() * cell) as f32);
         let inside = covered(region.contours(), origin, cell, columns, rows);
         Depth { origin, cell, columns, rows, inside, distance: distance.collect() }
     }
@@ -53,12 +55,21 @@ impl Depth {
         // A side may cut a corner between two of its samples; both ends are up to half a diagonal from the
         // middles of their cells.
         let i = self.index(p)?;
-        (self.distance[i] > far + 2.5 * self.cell).then(|| self.inside[i])
+        (f64::from(self.distance[i]) > far + 2.5 * self.cell).then(|| self.inside[i])
+    }
+
+    /// A map of what is nearer than a `radius`, where only places that are surely inside and `far` from the edge
+    /// are clear.
+    pub fn near_map(&self, far: f64, radius: f64) -> NearMap {
+        let sure =
+            |(&distance, &inside): (&f32, &bool)| inside && f64::from(distance) > far + 2.5 * self.cell;
+        let clear: Vec<bool> = self.distance.iter().zip(&self.inside).map(sure).collect();
+        NearMap::new(self.origin, self.cell, &clear, self.columns, radius)
     }
 
     /// Distance to the edge, to within two cells.
     pub fn distance(&self, p: Point) -> f64 {
-        self.index(p).map_or(0.0, |i| self.distance[i])
+        self.index(p).map_or(0.0, |i| f64::from(self.distance[i]))
     }
 }
 

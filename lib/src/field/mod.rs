@@ -2,6 +2,8 @@
 
 mod depth;
 pub mod direction;
+mod near;
+mod seeds;
 pub mod streamline;
 
 pub use direction::DirectionField;

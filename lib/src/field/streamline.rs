@@ -3,18 +3,20 @@
 //!
 //! Departures: a line is first traced as far as it goes and then cut into equal pieces, where
 //! the papers stop it at its longest length; what would remain at its end, too short to use,
-//! is shared out instead. Seeds wait in a heap by distance from the boundary and the guides,
+//! is shared out instead. Seeds wait in a queue by distance from the boundary and the guides,
 //! with a random number drawn once for ties: the same order as sorting after each insertion.
+//! What is too near to a line or to the boundary is told by a map of bits in most places, and
+//! looked up exactly where that is not sure.
 
 use crate::field::depth::Depth;
 use crate::field::direction::DirectionField;
+use crate::field::near::{Near, NearMap};
+use crate::field::seeds::Seeds;
 use crate::geom::near::PointGrid;
 use crate::geom::polyline::{self, left_of};
 use crate::geom::region::Region;
 use crate::rng::Rng;
 use kurbo::{Point, Vec2};
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
 
 /// Distances of the tracing, in user units.
 #[derive(Clone, Debug)]
@@ -60,6 +62,10 @@ impl StreamlineParams {
 /// How much more room than half the spacing a line on the boundary gets, in spacings.
 pub const BOUNDARY_BONUS: f64 = 0.2;
 
+/// A free line this near to the boundary, in spacings, would carry a sliver; where it should run into a tip, it
+/// is extended there later.
+const BOUNDARY: f64 = 0.3;
+
 /// A traced line, evenly sampled.
 #[derive(Clone, Debug)]
 pub struct Streamline {
@@ -77,15 +83,13 @@ pub struct Tracer<'a> {
     depth: Depth,
     /// Every second point of the lines: they are found all the same.
     taken: PointGrid,
+    /// What is known without looking at them.
+    near: NearMap,
     lines: Vec<Streamline>,
-    seeds: BinaryHeap<Seed>,
+    seeds: Seeds,
     rng: Rng,
     steps_left: usize,
 }
-
-/// Ordered by distance, then by the random number, nearest first.
-#[derive(PartialEq, Eq, PartialOrd, Ord)]
-struct Seed(Reverse<(u64, u64)>, [u64; 2]);
 
 impl<'a> Tracer<'a> {
     /// A tracer with no lines yet. `most_steps` bounds the work.
@@ -97,14 +101,18 @@ impl<'a> Tracer<'a> {
         most_steps: usize,
     ) -> Self {
         let taken = PointGrid::new(region.bounds(), params.stop());
+        let depth = Depth::new(region, params.spacing);
+        let seeds = Seeds::new(params.spacing / 4.0);
+        let near = depth.near_map(BOUNDARY * params.spacing, params.stop());
         Tracer {
             region,
             field,
-            depth: Depth::new(region, params.spacing),
+            depth,
+            near,
             params,
             taken,
             lines: Vec::new(),
-            seeds: BinaryHeap::new(),
+            seeds,
             rng,
             steps_left: most_steps,
         }
@@ -112,9 +120,7 @@ impl<'a> Tracer<'a> {
 
     /// Adds a place where a line may start; `distance` is that from boundary and guides.
     pub fn seed(&mut self, at: Point, distance: f64) {
-        let tie = self.rng.bits();
-        // Non-negative floats order as their bits do.
-        self.seeds.push(Seed(Reverse((distance.max(0.0).to_bits(), tie)), [at.x.to_bits(), at.y.to_bits()]));
+        self.seeds.push(at, distance, self.rng.bits());
     }
 
     /// Adds a line that is already known, cut into pieces, as far as it keeps clear of the others. One that
@@ -135,7 +141,7 @@ impl<'a> Tracer<'a> {
     pub fn run(&mut self, mut go_on: impl FnMut(f64) -> bool) -> bool {
         const ASK_EVERY: usize = 64;
         let mut count = 0;
-        while let Some(Seed(_, [x, y])) = self.seeds.pop() {
+        while let Some(at) = self.seeds.pop(|at| self.near.look(at) != Near::Yes) {
             count += 1;
             if count % ASK_EVERY == 0 && !go_on(count as f64 / (count + self.seeds.len()) as f64) {
                 return false;
@@ -143,7 +149,6 @@ impl<'a> Tracer<'a> {
             if self.steps_left == 0 {
                 return false;
             }
-            let at = Point::new(f64::from_bits(x), f64::from_bits(y));
             if let Some(points) = self.trace(at) {
                 self.keep(&points, LineKind::Free);
             }
@@ -161,14 +166,18 @@ impl<'a> Tracer<'a> {
         self.lines
     }
 
+    /// True if a place is inside and no other line is near.
     fn free(&self, p: Point) -> bool {
-        // A free line this near to the boundary would carry a sliver; where it should run
-        // into a tip, it is extended there later.
-        const BOUNDARY: f64 = 0.3;
-        let edge = BOUNDARY * self.params.spacing;
-        let inside = match self.depth.surely_inside(p, edge) {
-            Some(inside) => inside,
-            None => self.region.contains(p) && self.region.distance(p, edge) >= edge,
+        let inside = match self.near.look(p) {
+            Near::No => return true,
+            Near::Yes => return false,
+            Near::MaybePoint => true,
+            Near::Maybe => {
+                let edge = BOUNDARY * self.params.spacing;
+                self.depth
+                    .surely_inside(p, edge)
+                    .unwrap_or_else(|| self.region.contains(p) && self.region.distance(p, edge) >= edge)
+            }
         };
         inside && !self.taken.any_within(p, self.params.stop(), |_, _| true)
     }
@@ -179,6 +188,10 @@ impl<'a> Tracer<'a> {
             return None;
         }
         let along = self.field.direction(seed, Vec2::new(1.0, 0.0))?;
+        let stop = self.params.stop();
+        let skip = (2.0 * stop / self.params.step()) as usize;
+        // Points of the other end that are passed over are no farther from it than this.
+        let far = stop + (skip + 1) as f64 * self.params.step();
         let mut ends = [vec![seed], vec![seed]];
         let mut directions = [Some(along), Some(-along)];
         // A line longer than this goes round and round.
@@ -193,9 +206,19 @@ impl<'a> Tracer<'a> {
                 let at = ends[side][ends[side].len() - 1];
                 directions[side] = self
                     .step(at, direction)
-                    .filter(|&(next, _)| self.free(next) && !self.meets_itself(next, &ends, side))
+                    .filter(|&(next, _)| {
+                        let other = ends[1 - side][ends[1 - side].len() - 1];
+                        let clear =
+                            self.near.look(next) == Near::No && next.distance_squared(other) > far * far;
+                        clear || self.free(next) && !self.meets_itself(next, &ends, side, skip)
+                    })
                     .map(|(next, direction)| {
                         ends[side].push(next);
+                        // What lies behind is in the way from now on; every second point is found all the same.
+                        let behind = ends[side].len().checked_sub(skip).filter(|i| i % 2 == 0);
+                        if let Some(&behind) = behind.and_then(|i| ends[side].get(i)) {
+                            self.near.suspect(behind);
+                        }
                         direction
                     });
             }
@@ -209,10 +232,10 @@ impl<'a> Tracer<'a> {
     /// One step of the classical Runge-Kutta method. `None` at a singularity.
     fn step(&self, at: Point, direction: Vec2) -> Option<(Point, Vec2)> {
         let h = self.params.step();
-        let k1 = self.field.direction(at, direction)?;
-        let k2 = self.field.direction(at + h / 2.0 * k1, k1)?;
-        let k3 = self.field.direction(at + h / 2.0 * k2, k2)?;
-        let k4 = self.field.direction(at + h * k3, k3)?;
+        let k1 = self.field.velocity(at, direction)?;
+        let k2 = self.field.velocity(at + h / 2.0 * k1, direction)?;
+        let k3 = self.field.velocity(at + h / 2.0 * k2, direction)?;
+        let k4 = self.field.velocity(at + h * k3, direction)?;
         let mean = (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0;
         let turn = direction.cross(mean).abs();
         if mean.dot(direction) <= 0.0 || turn > h / self.params.tightest() {
@@ -222,9 +245,8 @@ impl<'a> Tracer<'a> {
     }
 
     /// True if a line comes back to itself: the samples at its own end are passed over.
-    fn meets_itself(&self, next: Point, ends: &[Vec<Point>; 2], side: usize) -> bool {
+    fn meets_itself(&self, next: Point, ends: &[Vec<Point>; 2], side: usize, skip: usize) -> bool {
         let stop = self.params.stop();
-        let skip = (2.0 * stop / self.params.step()) as usize;
         let step = self.params.step();
         // A line is no shorter than the way across it: what is far takes as many points to come near.
         let any_near = |points: &[Point]| {
@@ -245,7 +267,8 @@ impl<'a> Tracer<'a> {
 
     /// Cuts a line into pieces of about equal length, keeps them, and sows both its sides.
     fn keep(&mut self, points: &[Point], kind: LineKind) {
-        let length = polyline::length(points);
+        let lengths = polyline::lengths(points);
+        let length = lengths.last().copied().unwrap_or(0.0);
         if length < self.params.min_length && kind != LineKind::Fixed {
             return;
         }
@@ -270,12 +293,12 @@ impl<'a> Tracer<'a> {
             if to - from < self.params.step() {
                 continue;
             }
-            let part = polyline::between(points, from, to);
             let steps = ((to - from) / self.params.step()).ceil().max(2.0) as usize;
-            let points = polyline::resample(&part, steps);
+            let points = polyline::resample_between(points, &lengths, from, to, steps);
             let owner = self.lines.len() as u32;
             for &p in points.iter().step_by(2).chain(points.last()) {
                 self.taken.insert(p, owner);
+                self.near.insert(p);
             }
             self.sow(&points, kind);
             self.lines.push(Streamline { points, kind });
@@ -288,9 +311,13 @@ impl<'a> Tracer<'a> {
         let spacing =
             self.params.spacing * if kind == LineKind::Boundary { 1.0 + BOUNDARY_BONUS } else { 1.0 };
         // Places half a spacing apart are as good as any between.
-        for (p, tangent) in points.iter().zip(polyline::tangents(points, false)).step_by(3) {
+        for i in (0..points.len()).step_by(3) {
+            let along = points[(i + 1).min(points.len() - 1)] - points[i.saturating_sub(1)];
+            if along == Vec2::ZERO {
+                continue;
+            }
             for side in [spacing, -spacing] {
-                let at = *p + side * left_of(tangent);
+                let at = points[i] + side * left_of(along.normalize());
                 if self.free(at) {
                     self.seed(at, self.depth.distance(at));
                 }

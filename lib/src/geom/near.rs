@@ -75,26 +75,46 @@ impl Cells {
 #[derive(Clone, Debug)]
 pub struct PointGrid {
     cells: Cells,
-    content: Vec<Vec<(Point, u32)>>,
+    /// The first and the last point of each cell.
+    ends: Vec<(u32, u32)>,
+    points: Vec<Linked>,
 }
+
+/// A point with its owner, and the number of the next one in its cell.
+#[derive(Clone, Debug)]
+struct Linked {
+    at: Point,
+    owner: u32,
+    next: u32,
+}
+
+/// Stands for no point.
+const NO_POINT: u32 = u32::MAX;
 
 impl PointGrid {
     /// An empty grid over `bounds`; places outside fall into the border cells.
     pub fn new(bounds: Rect, cell: f64) -> Self {
         let cells = Cells::new(bounds, cell);
-        let content = vec![Vec::new(); cells.columns * cells.rows];
-        PointGrid { cells, content }
+        let ends = vec![(NO_POINT, NO_POINT); cells.columns * cells.rows];
+        PointGrid { cells, ends, points: Vec::new() }
     }
 
     /// Takes all points out.
     pub fn clear(&mut self) {
-        self.content.iter_mut().for_each(Vec::clear);
+        self.ends.fill((NO_POINT, NO_POINT));
+        self.points.clear();
     }
 
     /// Adds a point.
     pub fn insert(&mut self, p: Point, owner: u32) {
-        let index = self.cells.index(p);
-        self.content[index].push((p, owner));
+        let number = self.points.len() as u32;
+        let (first, last) = &mut self.ends[self.cells.index(p)];
+        match self.points.get_mut(*last as usize) {
+            Some(last) => last.next = number,
+            None => *first = number,
+        }
+        *last = number;
+        self.points.push(Linked { at: p, owner, next: NO_POINT });
     }
 
     /// Visits the points within `radius` (and some beyond), until `visit` says false.
@@ -102,10 +122,12 @@ impl PointGrid {
         let (low, high) =
             (Point::new(at.x - radius, at.y - radius), Point::new(at.x + radius, at.y + radius));
         for index in self.cells.covered(low, high) {
-            for &(p, owner) in &self.content[index] {
-                if !visit(p, owner) {
+            let mut number = self.ends[index].0;
+            while let Some(&Linked { at, owner, next }) = self.points.get(number as usize) {
+                if !visit(at, owner) {
                     return;
                 }
+                number = next;
             }
         }
     }

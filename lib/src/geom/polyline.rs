@@ -13,26 +13,45 @@ pub fn length(points: &[Point]) -> f64 {
     points.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
 }
 
+/// Arc length from the start to each point.
+pub fn lengths(points: &[Point]) -> Vec<f64> {
+    let (mut lengths, mut walked) = (Vec::with_capacity(points.len()), 0.0);
+    let mut previous = points.first();
+    for p in points {
+        walked += previous.map_or(0.0, |previous| p.distance(*previous));
+        lengths.push(walked);
+        previous = Some(p);
+    }
+    lengths
+}
+
 /// Points at equal steps of arc length, both ends included: `n + 1` points, `n >= 1`.
 /// A polyline of one point is repeated.
 pub fn resample(points: &[Point], n: usize) -> Vec<Point> {
     let (Some(&first), Some(&last)) = (points.first(), points.last()) else { return Vec::new() };
-    let step = length(points) / n as f64;
-    let mut out = Vec::with_capacity(n + 1);
-    out.push(first);
-    let (mut walked, mut i) = (0.0, 0);
-    for k in 1..n {
-        let target = step * k as f64;
-        while i + 2 < points.len() && walked + points[i].distance(points[i + 1]) < target {
-            walked += points[i].distance(points[i + 1]);
-            i += 1;
-        }
-        let piece = points.get(i + 1).map_or(0.0, |next| points[i].distance(*next));
-        let t = if piece > 0.0 { ((target - walked) / piece).clamp(0.0, 1.0) } else { 0.0 };
-        out.push(points.get(i + 1).map_or(points[i], |next| points[i].lerp(*next, t)));
-    }
-    out.push(last);
+    let lengths = lengths(points);
+    let mut out = resample_between(points, &lengths, 0.0, lengths[points.len() - 1], n);
+    (out[0], out[n]) = (first, last);
     out
+}
+
+/// Points at equal steps of arc length between two arc lengths: `n + 1` points, `n >= 1`. `lengths` are those of
+/// the points.
+pub fn resample_between(points: &[Point], lengths: &[f64], from: f64, to: f64, n: usize) -> Vec<Point> {
+    let step = (to - from) / n as f64;
+    let mut i = lengths.partition_point(|&length| length <= from).saturating_sub(1);
+    (0..=n)
+        .map(|k| {
+            let target = from + step * k as f64;
+            while i + 2 < points.len() && lengths[i + 1] < target {
+                i += 1;
+            }
+            let Some(&next) = points.get(i + 1) else { return points[i] };
+            let piece = lengths[i + 1] - lengths[i];
+            let t = if piece > 0.0 { ((target - lengths[i]) / piece).clamp(0.0, 1.0) } else { 0.0 };
+            points[i].lerp(next, t)
+        })
+        .collect()
 }
 
 /// The part of a polyline between two arc lengths.
