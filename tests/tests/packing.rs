@@ -5,7 +5,7 @@ mod support;
 
 use rinceau::geom::boolean::{area, difference, offset, signed_area, simplified, union};
 use rinceau::geom::region::Region;
-use rinceau_format::{Artwork, Scene};
+use rinceau_format::{Artwork, Part, Scene};
 use support::geometry::*;
 use support::packing::{check, pack};
 
@@ -70,6 +70,39 @@ fn gaps_take_dots_diamonds_drops_and_elements_of_ones_own() {
     }
     let refused = pack(&heart(), &[("fillers", "dost".to_owned())], 1).unwrap_err();
     assert_eq!(refused.code(), "no-filler");
+}
+
+#[test]
+fn large_rooms_get_elements_with_veins() {
+    let outline = "M0,20C30,0 90,0 120,20C90,40 30,40 0,20Z";
+    let veins = "M20,18H100V22H20ZM30,12H90V15H30ZM30,25H90V28H30Z";
+    let element = |id: &str, d: &str, y: f64| {
+        format!(
+            "<g class='rinceau-element' id='{id}' transform='translate(0 {y})'><path fill-rule='evenodd' d='{d}'/><path class='rinceau-spine' d='M0,20H120'/></g>"
+        )
+    };
+    let container = format!("<path id='c' class='rinceau-container' d='{HEART}'/>");
+    let both = scene(&format!(
+        "{container}{}{}",
+        element("blank", outline, 400.0),
+        element("veined", &format!("{outline}{veins}"), 450.0)
+    ));
+    let params = [("spacing", "46"), ("elements", "drawn"), ("fillers", "none"), ("mould", "0")];
+    let sizes = |artwork: &Artwork, of: &str| -> Vec<f64> {
+        let items = artwork.group("elements").unwrap().items.iter().filter(|item| item.of == of);
+        // The outline is the largest contour.
+        let outline =
+            |part: &Part| contours(&part.path).iter().map(|c| signed_area(c).abs()).fold(0.0, f64::max);
+        items.flat_map(|item| item.parts.iter().map(outline)).collect()
+    };
+    let artwork = packed(&both, &params);
+    let (blank, veined) = (sizes(&artwork, "blank"), sizes(&artwork, "veined"));
+    let largest = |sizes: &[f64]| sizes.iter().copied().fold(0.0, f64::max);
+    assert!(veined.len() > blank.len(), "{} {}", veined.len(), blank.len());
+    assert!(largest(&veined) > 1.3 * largest(&blank), "{veined:?} {blank:?}");
+    // Where there is no other, it is taken as ever.
+    let alone = packed(&scene(&format!("{container}{}", element("blank", outline, 400.0))), &params);
+    assert!(alone.counts["coverage"] > 0.5, "{:?}", alone.counts);
 }
 
 #[test]

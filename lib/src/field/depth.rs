@@ -1,7 +1,7 @@
 //! How far places are from the edge of a region.
 
 use crate::field::near::NearMap;
-use crate::geom::distance::{covered, squared_distances};
+use crate::geom::distance::{covered, passed, squared_distances};
 use crate::geom::region::Region;
 use kurbo::Point;
 
@@ -26,18 +26,7 @@ impl Depth {
         let count = |side: f64| ((side / cell) as usize + 1).min(MOST_CELLS as usize);
         let (columns, rows) = (count(bounds.width()), count(bounds.height()));
         let origin = bounds.origin();
-        let mut passed = vec![false; columns * rows];
-        for contour in region.contours() {
-            let sides = contour.last().into_iter().chain(contour).zip(contour);
-            for (&p, &q) in sides {
-                let steps = (p.distance(q) / (0.5 * cell)).ceil().clamp(1.0, 1e6);
-                for k in 0..=steps as usize {
-                    let at = p.lerp(q, k as f64 / steps) - origin;
-                    let (x, y) = ((at.x / cell) as usize, (at.y / cell) as usize);
-                    passed[y.min(rows - 1) * columns + x.min(columns - 1)] = true;
-                }
-            }
-        }
+        let passed = passed(region.contours(), origin, cell, columns, rows);
         let distance =
             squared_distances(&passed, columns).into_iter().map(|squared| (squared.sqrt() * cell) as f32);
         let inside = covered(region.contours(), origin, cell, columns, rows);

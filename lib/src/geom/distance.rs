@@ -118,6 +118,24 @@ impl Hull {
     }
 }
 
+/// Which cells of a grid the sides of closed contours pass, to within half a cell; what lies outside counts for
+/// the cells of the border.
+pub fn passed(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize, rows: usize) -> Vec<bool> {
+    let mut passed = vec![false; columns * rows];
+    for contour in contours {
+        let sides = contour.last().into_iter().chain(contour).zip(contour);
+        for (&p, &q) in sides {
+            let steps = (p.distance(q) / (0.5 * cell)).ceil().clamp(1.0, 1e6);
+            for k in 0..=steps as usize {
+                let at = p.lerp(q, k as f64 / steps) - origin;
+                let (x, y) = ((at.x / cell) as usize, (at.y / cell) as usize);
+                passed[y.min(rows - 1) * columns + x.min(columns - 1)] = true;
+            }
+        }
+    }
+    passed
+}
+
 /// Which cells of a grid have their middle inside simple contours (even-odd), by scan lines.
 pub fn covered(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize, rows: usize) -> Vec<bool> {
     let mut covered = vec![false; columns * rows];

@@ -331,6 +331,12 @@ pub fn point_segment(at: Point, p: Point, q: Point) -> f64 {
     point_segment_squared(at, p, q).sqrt()
 }
 
+/// The place of a segment that is nearest to a point.
+pub fn foot(at: Point, p: Point, q: Point) -> Point {
+    let d = q - p;
+    p + ((at - p).dot(d) / d.hypot2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0) * d
+}
+
 fn point_segment_squared(at: Point, p: Point, q: Point) -> f64 {
     let (d, w) = (q - p, at - p);
     let (along, squared) = (w.dot(d), d.hypot2());

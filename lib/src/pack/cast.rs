@@ -34,7 +34,8 @@ pub(super) fn cast(
         let tried: Vec<Vec<Trial>> = blobs_ahead.par_iter().map(trials).collect();
         let mut chosen = Vec::with_capacity(tried.len());
         for (blob, tried) in blobs_ahead.iter().zip(tried) {
-            if let Some(trial) = best(&tried, blob, &prepared.fields[blob.field], &neighbours, rng) {
+            if let Some(trial) = best(&tried, templates, blob, &prepared.fields[blob.field], &neighbours, rng)
+            {
                 neighbours.add(blob, trial.pose.template);
                 chosen.push((blob, trial));
             }
@@ -55,7 +56,7 @@ pub(super) fn chosen(
     neighbours: &Neighbours,
     rng: &mut Rng,
 ) -> Option<Body> {
-    let trial = best(&trials(templates, usable, blob, field), blob, field, neighbours, rng)?;
+    let trial = best(&trials(templates, usable, blob, field), templates, blob, field, neighbours, rng)?;
     body(blob, trial, templates, field)
 }
 
@@ -77,6 +78,7 @@ fn trials(templates: &[Template], usable: &[usize], blob: &Blob, field: &Field) 
 /// The best trial for a blob.
 fn best(
     tried: &[Trial],
+    templates: &[Template],
     blob: &Blob,
     field: &Field,
     neighbours: &Neighbours,
@@ -89,7 +91,11 @@ fn best(
     for &trial in tried {
         let against = field.guided && field.params.sense == "arrow" && trial.pose.along != reversed;
         let repeats = neighbours.repeats(blob, trial.pose.template);
-        let score = score(&trial, room, repeats, against, &field.params)
+        let template = &templates[trial.pose.template];
+        // Radius of its largest blank disc, in spacings.
+        let scale = blob.length / template.length * libm::exp(trial.distortion);
+        let blank = scale * template.half_width * template.blank / field.sizes.spacing;
+        let score = score(&trial, room, (repeats, against, blank), &field.params)
             + rng.between(0.0, 0.06 * field.params.variety);
         if best.as_ref().is_none_or(|(other, _)| score > *other) {
             best = Some((score, trial));
@@ -140,14 +146,19 @@ impl Neighbours {
     }
 }
 
-/// How much of a trial's praise stays after its distortion and its neighbours.
-fn score(trial: &Trial, room: f64, repeats: f64, against: bool, params: &Params) -> f64 {
-    // Weights of the three against the share of the room that is filled.
+/// How much of a trial's praise stays after its distortion, its neighbours, the arrows and its largest blank disc.
+fn score(trial: &Trial, room: f64, (repeats, against, blank): (f64, bool, f64), params: &Params) -> f64 {
+    // Weights of the four against the share of the room that is filled.
     const DISTORTION: f64 = 0.12;
     const REPEATS: f64 = 0.3;
     const AGAINST: f64 = 0.25;
+    const BLANK: f64 = 1.0;
+    // So large, in spacings, a blank disc is a rest for the eye. A larger one among elements with veins is a hole
+    // in the pattern; among elements that are all blank it is the same for all.
+    const REST: f64 = 0.25;
     trial.area / room.max(f64::MIN_POSITIVE)
         - DISTORTION * trial.distortion.abs()
         - REPEATS * params.variety * repeats
         - if against { AGAINST } else { 0.0 }
+        - BLANK * (blank - REST).max(0.0)
 }

@@ -4,7 +4,8 @@
 //! on trial and judged by the area it would fill, which measures the stated goals directly at
 //! the same cost. And where the paper scales an element's width by one factor, the largest
 //! that stays in the blob, the factor here is a smooth function along each side that nowhere
-//! exceeds the room and varies by no more than `stretch`: `stretch = 1` is the paper's.
+//! exceeds the room and varies by no more than `stretch`: `stretch = 1` is the paper's. Of two
+//! elements that fill a large room as well, one with veins or holes is taken.
 
 use super::blob::Blob;
 use super::params::Params;

@@ -7,6 +7,7 @@
 //! lines, so the width holds everywhere, also where two parts of a piece had hung by a thinner neck.
 
 use crate::geom::boolean::{Contour, is_outer, offset, signed_area, simplified, stroked};
+use crate::geom::near::foot;
 use crate::geom::polyline::{self, simplified_closed};
 use crate::geom::triangulate::delaunay;
 use crate::ink::area_of;
@@ -149,22 +150,20 @@ fn nearest(first: &[Contour], second: &[Contour], mut q: Point) -> [Point; 2] {
     const ROUNDS: usize = 8;
     let mut p = q;
     for _ in 0..ROUNDS {
-        p = foot(first, q);
-        q = foot(second, p);
+        p = nearest_on(first, q);
+        q = nearest_on(second, p);
     }
     [p, q]
 }
 
 /// The place on some contours that is nearest to another.
-fn foot(contours: &[Contour], at: Point) -> Point {
+fn nearest_on(contours: &[Contour], at: Point) -> Point {
     let mut best = (f64::INFINITY, at);
     for contour in contours {
         let Some(&last) = contour.last() else { continue };
         let mut previous = last;
         for &p in contour {
-            let along = p - previous;
-            let t = ((at - previous).dot(along) / along.hypot2().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            let on = previous + t * along;
+            let on = foot(at, previous, p);
             let squared = on.distance_squared(at);
             if squared < best.0 {
                 best = (squared, on);

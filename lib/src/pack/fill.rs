@@ -33,7 +33,7 @@ pub(super) struct Room {
 
 /// Smaller ones read as dust where there is room for others.
 pub(super) const GAPS: Room = Room { smallest: 0.05, step: 1.0 / 13.0, nooks: false };
-pub(super) const NOOKS: Room = Room { smallest: 0.014, step: 1.0 / 24.0, nooks: true };
+pub(super) const NOOKS: Room = Room { smallest: 0.013, step: 1.0 / 24.0, nooks: true };
 
 /// The widest gap that stays as it is, over the mean of all as the grid sees it, which is a little more than it is.
 /// In channels of one width, three pieces that meet leave 1.15.

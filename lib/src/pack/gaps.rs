@@ -3,7 +3,7 @@
 use super::prepare::Field;
 use crate::geom::boolean::Contour;
 use crate::geom::distance::{cover, covered, squared_distances};
-use crate::geom::near::{PointGrid, SegmentGrid, point_segment};
+use crate::geom::near::{PointGrid, SegmentGrid, foot, point_segment};
 use crate::geom::polyline;
 use crate::geom::region::Region;
 use crate::shapes::closed;
@@ -256,6 +256,18 @@ impl<'a> Gaps<'a> {
                 }
                 best > before
             });
+            let moved = moved || {
+                // Nor do these see one that runs between them and is sharp: it leads away from both its sides.
+                let next = at + step * self.away(inked, &blockers, at, best + step);
+                let (free, blocker) = self.clearance_and_blocker(inked, next);
+                let better = free > best;
+                if better {
+                    (at, best) = (next, free);
+                    blockers[oldest] = blocker.or(blockers[oldest]);
+                    oldest = (oldest + 1) % blockers.len();
+                }
+                better
+            };
             if !moved {
                 // The middle is no farther away than that.
                 if best + step < least {
@@ -265,6 +277,19 @@ impl<'a> Gaps<'a> {
             }
         }
         (at, best)
+    }
+
+    /// The way from what leaves no more than this `clearance`, of all that blocked the climb; zero if it lies all
+    /// around.
+    fn away(&self, inked: Inked, blockers: &[Option<Blocker>], at: Point, clearance: f64) -> Vec2 {
+        let from = |&(p, q, owner): &Blocker| {
+            let away = at - foot(at, p, q);
+            let distance = away.hypot();
+            (distance - inked.stroke(owner) - self.gap <= clearance && distance > 0.0)
+                .then(|| away / distance)
+        };
+        let sum: Vec2 = blockers.iter().flatten().filter_map(from).fold(Vec2::ZERO, |sum, way| sum + way);
+        if sum == Vec2::ZERO { sum } else { sum.normalize() }
     }
 
     /// True for what is covered. Nearer to an outline than a cell is wide the answer may be

@@ -1,8 +1,9 @@
 //! Elements and their LR functions (FLOWPAK 4.2, checklist F-020 to F-023).
 
 use crate::geom::crossing::any_crossing;
+use crate::geom::distance::{covered, passed, squared_distances};
 use crate::geom::flatten::flatten;
-use crate::geom::polyline::left_of;
+use crate::geom::polyline::{self, left_of};
 use crate::geom::region::Region;
 use kurbo::{Affine, BezPath, PathEl, Point, Rect};
 use rinceau_format::{Element, Error, Part, Source, Style};
@@ -33,6 +34,8 @@ pub(super) struct Template {
     pub half_width: f64,
     /// Length along the spine.
     pub length: f64,
+    /// Radius of the largest disc in it that no edge crosses, against `half_width`.
+    pub blank: f64,
     pub side: Side,
     /// Half the widest stroke, in user units.
     pub stroke: f64,
@@ -103,7 +106,10 @@ impl Template {
         let paths: Vec<BezPath> = parts.iter().map(|(path, _)| path.clone()).collect();
         let subpaths: Vec<BezPath> = paths.iter().flat_map(subpaths).collect();
         let is_outer = is_outer(&subpaths);
+        let drawn: Vec<BezPath> =
+            subpaths.iter().map(|path| Affine::scale_non_uniform(x1 - x0, 1.0) * path.clone()).collect();
         Ok(Template {
+            blank: blank(&drawn, &is_outer, half_width),
             crosses_itself: !builtin && any_crossing(&paths, 1e-4),
             outer: subpaths.into_iter().zip(&is_outer).filter_map(|(path, &is)| is.then_some(path)).collect(),
             is_outer,
@@ -157,6 +163,30 @@ impl Side {
             Side::Full
         }
     }
+}
+
+/// The largest disc inside the outer subpaths that no edge crosses, against the half width.
+fn blank(subpaths: &[BezPath], is_outer: &[bool], half_width: f64) -> f64 {
+    // Of the half width; and so many cells at most.
+    const CELL: f64 = 1.0 / 16.0;
+    const MOST_CELLS: f64 = 1e5;
+    let flat = |path: &BezPath| flatten(path, 0.1 * CELL * half_width).into_iter().map(|flat| flat.points);
+    let edges: Vec<Vec<Point>> = subpaths.iter().flat_map(flat).collect();
+    let outer = subpaths
+        .iter()
+        .zip(is_outer)
+        .filter(|(_, is)| **is)
+        .flat_map(|(path, _)| flat(path))
+        .collect::<Vec<_>>();
+    let Some(bounds) = polyline::bounds(edges.iter().flatten().copied()) else { return 0.0 };
+    let cell = (CELL * half_width).max((bounds.area() / MOST_CELLS).sqrt());
+    let (columns, rows) = ((bounds.width() / cell) as usize + 1, (bounds.height() / cell) as usize + 1);
+    let origin = bounds.origin();
+    let distances = squared_distances(&passed(&edges, origin, cell, columns, rows), columns);
+    let inside = covered(&outer, origin, cell, columns, rows);
+    let largest =
+        distances.iter().zip(inside).filter(|(_, inside)| *inside).map(|(d, _)| *d).fold(0.0, f64::max);
+    largest.sqrt() * cell / half_width
 }
 
 /// The subpaths of a path, each a path of its own.
