@@ -2,6 +2,7 @@
 
 mod depth;
 pub mod direction;
+mod level;
 mod near;
 mod seeds;
 pub mod streamline;

@@ -2,6 +2,7 @@
 //!
 //! Points go in and come out as f64; nobody else sees its integer grid.
 
+use super::polyline;
 use i_overlay::core::fill_rule::FillRule;
 use i_overlay::core::overlay_rule::OverlayRule;
 use i_overlay::float::simplify::SimplifyShape;
@@ -9,7 +10,7 @@ use i_overlay::float::single::SingleFloatOverlay;
 use i_overlay::mesh::float::outline::offset::OutlineOffset;
 use i_overlay::mesh::float::stroke::offset::StrokeOffset;
 use i_overlay::mesh::float::style::{LineCap, LineJoin, OutlineStyle, StrokeStyle};
-use kurbo::Point;
+use kurbo::{Point, Rect};
 
 /// A closed polygon without its repeated first point.
 pub type Contour = Vec<Point>;
@@ -82,6 +83,33 @@ pub fn signed_area(contour: &[Point]) -> f64 {
 /// True for an outer contour among the results of this module, false for a hole.
 pub fn is_outer(contour: &Contour) -> bool {
     signed_area(contour) > 0.0
+}
+
+/// Results of this module by connected part, the smallest first: an outer contour with its holes.
+pub fn parts(contours: impl IntoIterator<Item = Contour>) -> Vec<Vec<Contour>> {
+    let (outer, holes): (Vec<Contour>, Vec<Contour>) = contours.into_iter().partition(is_outer);
+    let mut parts: Vec<Vec<Contour>> = outer.into_iter().map(|contour| vec![contour]).collect();
+    // From the smallest on, so that a hole goes to the innermost.
+    parts.sort_by(|a, b| signed_area(&a[0]).total_cmp(&signed_area(&b[0])));
+    for hole in holes {
+        if let Some(part) = parts.iter_mut().find(|part| encloses(&part[0], hole[0])) {
+            part.push(hole);
+        }
+    }
+    parts
+}
+
+/// True if a contour winds around a place (even-odd).
+pub fn encloses(contour: &Contour, at: Point) -> bool {
+    let crosses = |&(p, q): &(&Point, &Point)| {
+        (p.y > at.y) != (q.y > at.y) && at.x < p.x + (at.y - p.y) / (q.y - p.y) * (q.x - p.x)
+    };
+    contour.last().into_iter().chain(contour).zip(contour).filter(crosses).count() % 2 == 1
+}
+
+/// True if a contour's bounding box reaches into a box.
+pub fn touches(contour: &Contour, bounds: Rect) -> bool {
+    polyline::bounds(contour.iter().copied()).is_some_and(|own| own.overlaps(bounds))
 }
 
 /// Area of simple contours: outer ones and holes run opposite ways.

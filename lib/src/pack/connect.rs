@@ -6,7 +6,7 @@
 //! as from one to the next. The one piece is what discs cover whose middles run through all cores and along all
 //! lines, so the width holds everywhere, also where two parts of a piece had hung by a thinner neck.
 
-use crate::geom::boolean::{Contour, is_outer, offset, signed_area, simplified, stroked};
+use crate::geom::boolean::{Contour, is_outer, offset, parts, signed_area, simplified, stroked};
 use crate::geom::near::foot;
 use crate::geom::polyline::{self, simplified_closed};
 use crate::geom::triangulate::delaunay;
@@ -51,7 +51,7 @@ pub(super) fn join(
         }
         let all: Vec<Vec<Contour>> = items_ahead.par_iter().map(core).collect();
         too_thin += all.iter().filter(|contours| contours.is_empty()).count();
-        cores.extend(all.into_iter().flat_map(connected));
+        cores.extend(all.into_iter().flat_map(parts));
     }
     if cores.is_empty() {
         let remedy = "Set the bridge width (--bridge) lower, or the element width (--spacing) higher";
@@ -97,28 +97,6 @@ fn united(cores: &[Vec<Contour>], bridges: &[[Point; 2]], radius: f64, tolerance
 fn light(contours: Vec<Contour>, tolerance: f64) -> Vec<Contour> {
     let lighter = contours.iter().map(|contour| simplified_closed(contour, 0.5 * tolerance));
     lighter.filter(|contour| contour.len() > 2).collect()
-}
-
-/// Contours by connected part: an outer one with its holes.
-fn connected(contours: Vec<Contour>) -> Vec<Vec<Contour>> {
-    let (outer, holes): (Vec<Contour>, Vec<Contour>) = contours.into_iter().partition(is_outer);
-    let mut parts: Vec<Vec<Contour>> = outer.into_iter().map(|contour| vec![contour]).collect();
-    // From the smallest on, so that a hole goes to the innermost.
-    parts.sort_by(|a, b| signed_area(&a[0]).total_cmp(&signed_area(&b[0])));
-    for hole in holes {
-        if let Some(part) = parts.iter_mut().find(|part| encloses(&part[0], hole[0])) {
-            part.push(hole);
-        }
-    }
-    parts
-}
-
-/// True if a contour winds around a place.
-fn encloses(contour: &Contour, at: Point) -> bool {
-    let crosses = |&(p, q): &(&Point, &Point)| {
-        (p.y > at.y) != (q.y > at.y) && at.x < p.x + (at.y - p.y) / (q.y - p.y) * (q.x - p.x)
-    };
-    contour.last().into_iter().chain(contour).zip(contour).filter(crosses).count() % 2 == 1
 }
 
 /// The shortest bridges that join all cores: a shortest tree is among the edges of a

@@ -1,13 +1,13 @@
 //! The gaps of a composition: where they are widest, and how much room there is at a place.
 
 use super::prepare::Field;
-use crate::geom::boolean::Contour;
+use crate::geom::boolean::{Contour, touches};
 use crate::geom::distance::{cover, covered, squared_distances};
 use crate::geom::near::{PointGrid, SegmentGrid, foot, point_segment};
 use crate::geom::polyline;
 use crate::geom::region::Region;
 use crate::shapes::closed;
-use kurbo::{Point, Rect, Vec2};
+use kurbo::{Point, Vec2};
 use rayon::prelude::*;
 use std::collections::BinaryHeap;
 
@@ -334,12 +334,4 @@ impl<'a> Gaps<'a> {
         self.origin
             + Vec2::new((cell % self.columns) as f64 + 0.5, (cell / self.columns) as f64 + 0.5) * self.step
     }
-}
-
-/// True if a contour's bounding box reaches into a box.
-fn touches(contour: &Contour, bounds: Rect) -> bool {
-    contour.first().is_some_and(|&first| {
-        let own = contour.iter().fold(Rect::from_points(first, first), |own, &p| own.union_pt(p));
-        own.overlaps(bounds)
-    })
 }

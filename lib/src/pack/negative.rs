@@ -3,10 +3,9 @@
 
 use super::place::Placement;
 use super::prepare::{Field, Prepared};
-use crate::geom::boolean::{Contour, area, difference, is_outer, offset, signed_area};
+use crate::geom::boolean::{Contour, area, difference, offset, parts, signed_area, touches};
 use crate::geom::polyline;
-use crate::geom::region::Region;
-use kurbo::{BezPath, Point, Rect};
+use kurbo::BezPath;
 
 /// Corners have this radius, in spacings, and what is thinner than twice it is left out.
 const ROUND: f64 = 0.045;
@@ -67,23 +66,9 @@ fn of_field(field: &Field, placement: &Placement) -> Vec<Vec<Contour>> {
     let contours = offset(&offset(&free, -round), round);
     let tolerance = 0.5 * sizes.tolerance();
     let smooth = |contour: &Contour| polyline::simplified_closed(contour, tolerance);
-    let (outer, holes): (Vec<Contour>, Vec<Contour>) = contours.iter().map(smooth).partition(is_outer);
     let least = SMALLEST * sizes.spacing * sizes.spacing;
-    let mut shapes: Vec<(Region, Vec<Contour>)> = outer
-        .into_iter()
-        .filter(|contour| contour.len() > 2 && signed_area(contour).abs() >= least)
-        .filter_map(|contour| Some((Region::new(vec![contour.clone()])?, vec![contour])))
-        .collect();
-    // From the smallest on, so that a hole goes to the innermost.
-    shapes.sort_by(|a, b| a.0.area().total_cmp(&b.0.area()));
-    for hole in holes {
-        if let Some(shape) = shapes.iter_mut().find(|shape| shape.0.contains(hole[0])) {
-            shape.1.push(hole);
-        }
-    }
-    shapes.into_iter().rev().map(|shape| shape.1).collect()
-}
-
-fn touches(contour: &[Point], bounds: Rect) -> bool {
-    contour.iter().any(|&p| bounds.contains(p))
+    let mut shapes = parts(contours.iter().map(smooth).filter(|contour| contour.len() > 2));
+    shapes.retain(|shape| signed_area(&shape[0]) >= least);
+    shapes.reverse();
+    shapes
 }

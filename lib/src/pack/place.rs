@@ -13,7 +13,7 @@ use super::refine::Body;
 use super::template::{BINS, Template, subpaths};
 use crate::field::LineKind;
 use crate::geom::bend::Bend;
-use crate::geom::boolean::{Contour, area, is_outer, simplified};
+use crate::geom::boolean::{Contour, area, encloses, is_outer, simplified};
 use crate::geom::crossing::{any_crossing, self_crossings};
 use crate::geom::flatten::flatten;
 use crate::geom::near::{SegmentGrid, crosses, segment_segment};
@@ -258,7 +258,7 @@ impl Placement {
         let holds = |outer: &[Contour], inner: &[Contour]| {
             let Some(&first) = inner.first().and_then(|contour| contour.first()) else { return false };
             bounds(outer).is_some_and(|bounds| bounds.contains(first))
-                && Region::new(outer.to_vec()).is_some_and(|region| region.contains(first))
+                && outer.iter().filter(|contour| encloses(contour, first)).count() % 2 == 1
         };
         self.placed
             .iter()
