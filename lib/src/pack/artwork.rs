@@ -90,40 +90,45 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
     let mut elements = Group { name: "elements".into(), ..Group::default() };
     let mut spines = Group { name: "spines".into(), hidden: true, ..Group::default() };
     // Bent finely only now, when it is known what stays, and on all cores.
-    let bend = |placed: &Placed| {
-        placed.paths(&made.templates[placed.template], &prepared.fields[placed.field].sizes)
-    };
-    let bent: Vec<Vec<BezPath>> = made.placed.par_iter().map(bend).collect();
-    for ((placed, tone), paths) in made.placed.iter().zip(tones).zip(bent) {
+    let drawn = |(index, (placed, tone)): (usize, (&Placed, usize))| -> Vec<Part> {
+        let field = &prepared.fields[placed.field];
         let template = &made.templates[placed.template];
         let palette = made.palette(placed.field, scene);
         // The accent is for the shapes of the gaps, where there are some.
-        let has_shapes = prepared.fields[placed.field].params.has_shapes();
-        let tone = if has_shapes && tone == 2 { elements.items.len() % 2 } else { tone };
-        let parts = template.parts.iter().zip(paths).map(|((_, style), path)| {
+        let tone = if field.params.has_shapes() && tone == 2 { index % 2 } else { tone };
+        let paths = placed.paths(template, &field.sizes);
+        let finish = made.finish(placed.field);
+        let part = |((_, style), path): (&(BezPath, Style), BezPath)| {
             let style = if template.builtin {
                 painted(style, palette[tone])
             } else {
                 style.scaled(placed.scale, decimals)
             };
-            Part { path, transform: Affine::IDENTITY, style }
-        });
-        let finish = made.finish(placed.field);
-        let parts: Vec<Part> = parts.filter_map(|part| finish.part(part)).collect();
+            finish.part(Part { path, transform: Affine::IDENTITY, style })
+        };
+        template.parts.iter().zip(paths).filter_map(part).collect()
+    };
+    let parts: Vec<Vec<Part>> = made.placed.par_iter().zip(tones).enumerate().map(drawn).collect();
+    for (placed, parts) in made.placed.iter().zip(parts) {
         let mirror = prepared.fields[placed.field].mirror;
-        push(&mut elements, Item::new(template.id.clone(), parts), mirror);
+        push(&mut elements, Item::new(made.templates[placed.template].id.clone(), parts), mirror);
         push(&mut spines, spine_item(&placed.spine), mirror);
     }
     let mut fillers = Group { name: "fillers".into(), ..Group::default() };
-    for filler in made.fillers {
-        push(&mut fillers, filler_item(filler, made, scene, decimals), prepared.fields[filler.field].mirror);
+    let item = |filler: &Filler| filler_item(filler, made, scene, decimals);
+    let items: Vec<Item> = made.fillers.par_iter().map(item).collect();
+    for (filler, item) in made.fillers.iter().zip(items) {
+        push(&mut fillers, item, prepared.fields[filler.field].mirror);
     }
     let mut negative = Group { name: "negative".into(), ..Group::default() };
-    for shape in made.negative {
+    let item = |shape: &Shape| {
         let style = Style::filled(made.palette(shape.field, scene)[2]);
         let part = Part { path: shape.path(), transform: Affine::IDENTITY, style };
-        let parts = made.finish(shape.field).part(part).into_iter().collect();
-        push(&mut negative, Item::new("gap", parts), prepared.fields[shape.field].mirror);
+        Item::new("gap", made.finish(shape.field).part(part).into_iter().collect())
+    };
+    let items: Vec<Item> = made.negative.par_iter().map(item).collect();
+    for (shape, item) in made.negative.iter().zip(items) {
+        push(&mut negative, item, prepared.fields[shape.field].mirror);
     }
     let fixed = Group {
         name: "fixed".into(),

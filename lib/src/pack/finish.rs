@@ -38,7 +38,9 @@ impl Finish {
         let contours: Vec<Contour> = flat.into_iter().map(|subpath| subpath.points).collect();
         let mut contours = simplified(&contours, part.style.fill_rule() == FillRule::EvenOdd);
         if self.rounding > 0.0 {
-            contours = rounded(contours, self.rounding);
+            // Offsets cost more than the number of points.
+            let lighter = contours.iter().map(|contour| simplified_closed(contour, 0.25 * self.tolerance));
+            contours = rounded(lighter.filter(|contour| contour.len() > 2).collect(), self.rounding);
         }
         if self.distress > 0.0 {
             contours = difference(&contours, &self.marks(&contours));
