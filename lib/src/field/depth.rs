@@ -41,18 +41,22 @@ impl Depth {
 
     /// Whether a place is inside, if it is sure to be at least this far from the edge.
     pub fn surely_inside(&self, p: Point, far: f64) -> Option<bool> {
+        let i = self.index(p)?;
+        self.is_surely_far(i, far).then(|| self.inside[i])
+    }
+
+    /// Whether all of a cell is sure to be at least this far from the edge.
+    fn is_surely_far(&self, i: usize, far: f64) -> bool {
         // A side may cut a corner between two of its samples; both ends are up to half a diagonal from the
         // middles of their cells.
-        let i = self.index(p)?;
-        (f64::from(self.distance[i]) > far + 2.5 * self.cell).then(|| self.inside[i])
+        f64::from(self.distance[i]) > far + 2.5 * self.cell
     }
 
     /// A map of what is nearer than a `radius`, where only places that are surely inside and `far` from the edge
     /// are clear.
     pub fn near_map(&self, far: f64, radius: f64) -> NearMap {
-        let sure =
-            |(&distance, &inside): (&f32, &bool)| inside && f64::from(distance) > far + 2.5 * self.cell;
-        let clear: Vec<bool> = self.distance.iter().zip(&self.inside).map(sure).collect();
+        let clear: Vec<bool> =
+            (0..self.inside.len()).map(|i| self.inside[i] && self.is_surely_far(i, far)).collect();
         NearMap::new(self.origin, self.cell, &clear, self.columns, radius)
     }
 

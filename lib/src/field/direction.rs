@@ -17,14 +17,13 @@ const MOST_CELLS: f64 = 512.0;
 #[derive(Clone, Debug)]
 pub struct DirectionField {
     level: Level,
-    origin: Point,
-    cell: f64,
-    /// The middle of the first cell, and cells in a unit of length.
-    first: Point,
-    per_unit: f64,
+    /// One patch fewer than cells in each row and column.
     patches: Vec<Patch>,
-    /// Patches of a row.
-    columns: i32,
+    /// The middle of the first cell.
+    first: Point,
+    cell: f64,
+    /// Cells in a unit of length.
+    per_unit: f64,
 }
 
 /// The directions between the middles of four cells that turn little against each other, all in one sense:
@@ -52,11 +51,9 @@ impl DirectionField {
         level.extrapolate();
         Some(DirectionField {
             patches: patches(&level),
-            columns: level.columns as i32 - 1,
             level,
-            origin: bounds.origin(),
-            cell,
             first: bounds.origin() + Vec2::new(0.5, 0.5) * cell,
+            cell,
             per_unit: 1.0 / cell,
         })
     }
@@ -74,17 +71,22 @@ impl DirectionField {
         let (x, y) = ((at.x - self.first.x) * self.per_unit, (at.y - self.first.y) * self.per_unit);
         // Signed and short: such casts cost least.
         let (column, row) = (x as i32, y as i32);
-        if !(x >= 0.0 && y >= 0.0 && column < self.columns) {
+        if !(x >= 0.0 && y >= 0.0 && column < self.columns()) {
             return None;
         }
         let (x, y) = (x - f64::from(column), y - f64::from(row));
-        let i = row as usize * self.columns as usize + column as usize;
+        let i = row as usize * self.columns() as usize + column as usize;
         let patch = self.patches.get(i)?;
         let mut v = patch[0] + x * patch[1] + y * (patch[2] + x * patch[3]);
         if v.x.is_nan() {
             v = self.turning(row as usize, column as usize, x, y)?;
         }
         Some(v * 1f64.copysign(v.dot(towards)))
+    }
+
+    /// Patches of a row.
+    fn columns(&self) -> i32 {
+        self.level.columns as i32 - 1
     }
 
     /// Bilinear in z, never in θ.
@@ -116,8 +118,8 @@ impl DirectionField {
                 // z turns twice as fast as the direction that it stands for.
                 let index = (turned / std::f64::consts::TAU).round() / 2.0;
                 if index != 0.0 {
-                    let middle = Vec2::new(column as f64 + 1.0, row as f64 + 1.0);
-                    found.push((self.origin + self.cell * middle, index));
+                    let middle = Vec2::new(column as f64 + 0.5, row as f64 + 0.5);
+                    found.push((self.first + self.cell * middle, index));
                 }
             }
         }
@@ -213,7 +215,7 @@ mod tests {
         let field = DirectionField::new(&square(), &guides, 4.0).unwrap();
         let mut even = 0;
         for (i, patch) in field.patches.iter().enumerate() {
-            let (row, column) = (i / field.columns as usize, i % field.columns as usize);
+            let (row, column) = (i / field.columns() as usize, i % field.columns() as usize);
             for (x, y) in [(0.0, 0.0), (0.3, 0.1), (0.5, 0.5), (0.8, 0.6), (1.0, 1.0)] {
                 let Some(z) = field.turning(row, column, x, y) else { continue };
                 let at = field.first + Vec2::new(column as f64 + x, row as f64 + y) * field.cell;

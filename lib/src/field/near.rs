@@ -1,6 +1,6 @@
 //! What is known of places without a closer look.
 
-use super::streamline::runs;
+use crate::geom::polyline::runs;
 use kurbo::{Point, Vec2};
 use std::ops::Range;
 

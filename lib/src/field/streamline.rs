@@ -131,7 +131,7 @@ impl<'a> Tracer<'a> {
         }
         let stop = self.params.stop();
         let clear: Vec<bool> = points.iter().map(|&p| !self.taken.any_within(p, stop, |_, _| true)).collect();
-        for run in runs(&clear) {
+        for run in polyline::runs(&clear) {
             self.keep(&points[run], kind);
         }
     }
@@ -324,23 +324,6 @@ impl<'a> Tracer<'a> {
             }
         }
     }
-}
-
-/// Maximal runs of `true`.
-pub fn runs(flags: &[bool]) -> Vec<std::ops::Range<usize>> {
-    let mut runs = Vec::new();
-    let mut start = None;
-    for (i, &flag) in flags.iter().chain(&[false]).enumerate() {
-        match (start, flag) {
-            (None, true) => start = Some(i),
-            (Some(first), false) => {
-                runs.push(first..i);
-                start = None;
-            }
-            _ => {}
-        }
-    }
-    runs
 }
 
 #[cfg(test)]

@@ -72,6 +72,23 @@ pub fn between(points: &[Point], from: f64, to: f64) -> Vec<Point> {
     out
 }
 
+/// Maximal runs of `true`, one flag for each point.
+pub fn runs(flags: &[bool]) -> Vec<std::ops::Range<usize>> {
+    let mut runs = Vec::new();
+    let mut start = None;
+    for (i, &flag) in flags.iter().chain(&[false]).enumerate() {
+        match (start, flag) {
+            (None, true) => start = Some(i),
+            (Some(first), false) => {
+                runs.push(first..i);
+                start = None;
+            }
+            _ => {}
+        }
+    }
+    runs
+}
+
 /// Unit tangents by central differences; zero where points coincide.
 pub fn tangents(points: &[Point], closed: bool) -> Vec<Vec2> {
     let n = points.len();

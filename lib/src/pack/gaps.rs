@@ -2,7 +2,7 @@
 
 use super::prepare::Field;
 use crate::geom::boolean::{Contour, touches};
-use crate::geom::distance::{cover, covered, squared_distances};
+use crate::geom::distance::{cover, covered, passed, squared_distances};
 use crate::geom::near::{PointGrid, SegmentGrid, foot, point_segment};
 use crate::geom::polyline;
 use crate::geom::region::Region;
@@ -136,10 +136,11 @@ impl<'a> Gaps<'a> {
             })
             .collect();
         // A slit may be so narrow that no cell has its middle in it.
-        let mut passed = outside;
-        region.contours().iter().for_each(|contour| self.mark(contour, &mut passed));
+        let mut edge_or_outside = passed(region.contours(), self.origin, step, columns, rows);
+        edge_or_outside.iter_mut().zip(outside).for_each(|(passed, outside)| *passed |= outside);
         let far = (self.reach / step + 2.0).powi(2);
-        self.inner = squared_distances(&passed, columns).into_iter().map(|squared| squared > far).collect();
+        self.inner =
+            squared_distances(&edge_or_outside, columns).into_iter().map(|squared| squared > far).collect();
         let length = |contour: &Contour| polyline::length(&closed(contour));
         let strip = edge * region.contours().iter().map(length).sum::<f64>();
         self.emptiness = (step * step * count + strip, step * step * sum + strip * edge / 2.0);
@@ -309,18 +310,6 @@ impl<'a> Gaps<'a> {
     /// Covers what a contour encloses.
     pub fn add(&mut self, contour: &Contour) {
         cover(std::slice::from_ref(contour), self.origin, self.step, self.columns, &mut self.elements);
-    }
-
-    /// Marks the cells that a contour passes.
-    fn mark(&self, contour: &Contour, marked: &mut [bool]) {
-        for (a, b) in contour.iter().zip(contour.iter().cycle().skip(1)) {
-            let pieces = (a.distance(*b) / (0.5 * self.step)).ceil().clamp(1.0, 1e4);
-            for k in 0..pieces as usize {
-                if let Some(cell) = self.cell(a.lerp(*b, k as f64 / pieces)) {
-                    marked[cell] = true;
-                }
-            }
-        }
     }
 
     fn cell(&self, at: Point) -> Option<usize> {

@@ -3,7 +3,6 @@
 
 use super::blob::END_GAP;
 use super::prepare::Field;
-use crate::field::streamline::runs;
 use crate::field::{BOUNDARY_BONUS, DirectionField, LineKind, Streamline, StreamlineParams, Tracer};
 use crate::geom::boolean::{self, Contour};
 use crate::geom::polyline::{self, left_of};
@@ -116,7 +115,7 @@ fn boundary(
     // Start at a gap, so that a run over the first point is not cut there.
     let start = usable.iter().position(|&usable| !usable).unwrap_or(0);
     let rotated: Vec<bool> = (0..n).map(|i| usable[(start + i) % n]).collect();
-    for run in runs(&rotated) {
+    for run in polyline::runs(&rotated) {
         let line: Vec<Point> = run.map(|i| points[(start + i) % n]).collect();
         tracer.add(&line, LineKind::Boundary);
     }

@@ -170,14 +170,14 @@ fn blank(subpaths: &[BezPath], is_outer: &[bool], half_width: f64) -> f64 {
     // Of the half width; and so many cells at most.
     const CELL: f64 = 1.0 / 16.0;
     const MOST_CELLS: f64 = 1e5;
-    let flat = |path: &BezPath| flatten(path, 0.1 * CELL * half_width).into_iter().map(|flat| flat.points);
-    let edges: Vec<Vec<Point>> = subpaths.iter().flat_map(flat).collect();
-    let outer = subpaths
-        .iter()
-        .zip(is_outer)
-        .filter(|(_, is)| **is)
-        .flat_map(|(path, _)| flat(path))
-        .collect::<Vec<_>>();
+    let flat = |(path, &is_outer): (&BezPath, &bool)| {
+        flatten(path, 0.1 * CELL * half_width).into_iter().map(move |flat| (flat.points, is_outer))
+    };
+    let (outer, inner): (Vec<_>, Vec<_>) =
+        subpaths.iter().zip(is_outer).flat_map(flat).partition(|(_, is_outer)| *is_outer);
+    let points = |subpaths: Vec<(Vec<Point>, bool)>| subpaths.into_iter().map(|(points, _)| points);
+    let outer: Vec<Vec<Point>> = points(outer).collect();
+    let edges: Vec<Vec<Point>> = outer.iter().cloned().chain(points(inner)).collect();
     let Some(bounds) = polyline::bounds(edges.iter().flatten().copied()) else { return 0.0 };
     let cell = (CELL * half_width).max((bounds.area() / MOST_CELLS).sqrt());
     let (columns, rows) = ((bounds.width() / cell) as usize + 1, (bounds.height() / cell) as usize + 1);
