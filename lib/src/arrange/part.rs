@@ -54,13 +54,13 @@ fn allowed(example: &Analysis, a: usize, b: usize) -> f64 {
     }
 }
 
-fn table(arrangement: &Arrangement, ground: &Ground, reach: f64) -> PointTable {
+fn table(arrangement: &Arrangement, ground: &Ground, reach: f64) -> PointTable<u32> {
     let margin = if ground.repeats { 1.3 * reach } else { 0.0 };
     let mut points = Vec::with_capacity(arrangement.grown.len());
     for &i in &arrangement.grown {
         ground.each_image(arrangement.objects[i as usize].at, margin, |image| points.push((image, i)));
     }
-    PointTable::new(ground.bounds.inflate(margin, margin), 0.5 * reach, &points)
+    PointTable::new(ground.bounds.inflate(margin, margin), 0.5 * reach, points.iter().copied())
 }
 
 /// Moves elements apart that came nearer to each other than any of their symbols are in the example,

@@ -194,16 +194,16 @@ fn map_curve(
         let h = (t1 - t0) / 3.0;
         let cubic = CubicBez::new(e0.0, e0.0 + h * e0.1, e1.0 - h * e1.1, e1.0);
         let near = |s: f64| place(source.eval(t0 + s * (t1 - t0))).distance(cubic.eval(s)) <= tolerance;
-        // Nothing that a warp does lies unseen within a piece.
-        let is_short = || {
+        // Nothing that a warp does lies unseen within a piece that is shorter than some radii.
+        let is_within = |radii: f64| {
             let (middle, length) = (cubic.p0.midpoint(cubic.p3), cubic.p0.distance(cubic.p3));
-            warps.iter().all(|warp| length < 2.5 * warp.radius() || !warp.reaches(middle, length / 2.0))
+            warps.iter().all(|warp| length < radii * warp.radius() || !warp.reaches(middle, length / 2.0))
         };
         let middle = f64::midpoint(t0, t1);
         let m = end(middle);
         let is_true = || {
-            let seen = if warps.is_empty() { &[0.2, 0.8][..] } else { &[0.15, 0.85, 0.32, 0.68] };
-            m.0.distance(cubic.eval(0.5)) <= tolerance && is_short() && seen.iter().all(|&s| near(s))
+            let seen = || if is_within(1.25) { &[0.2, 0.8][..] } else { &[0.15, 0.85, 0.32, 0.68] };
+            m.0.distance(cubic.eval(0.5)) <= tolerance && is_within(2.5) && seen().iter().all(|&s| near(s))
         };
         if halvings == MOST_HALVINGS || is_true() {
             out.curve_to(cubic.p1, cubic.p2, cubic.p3);

@@ -8,35 +8,63 @@ use std::ops::Range;
 /// Squared distance, in cells, from every cell to the nearest marked one; infinite if none
 /// is. Row by row.
 pub fn squared_distances(marked: &[bool], columns: usize) -> Vec<f64> {
-    nearest(marked, columns, None)
+    let distances = Distances::new(marked, columns);
+    let mut line = Line::default();
+    let mut grid = Vec::with_capacity(marked.len());
+    (0..distances.rows()).for_each(|row| grid.extend_from_slice(distances.row(row, &mut line)));
+    grid
 }
 
 /// As [`squared_distances`], and which cell is the nearest marked one; a cell's own number if none is.
 pub fn nearest_marked(marked: &[bool], columns: usize) -> (Vec<f64>, Vec<usize>) {
+    let distances = Distances::new(marked, columns);
+    let mut line = Line::default();
+    let mut grid = Vec::with_capacity(marked.len());
     let mut cells: Vec<usize> = (0..marked.len()).collect();
-    (nearest(marked, columns, Some(&mut cells)), cells)
-}
-
-/// `cells` become the numbers of the nearest marked cells.
-fn nearest(marked: &[bool], columns: usize, mut cells: Option<&mut Vec<usize>>) -> Vec<f64> {
-    let columns = columns.max(1);
-    let rows = nearest_rows(marked, columns);
-    let mut grid = vec![f64::INFINITY; marked.len()];
-    let (mut hull, mut roots) = (Hull::default(), Vec::new());
-    for (row, (values, near)) in grid.chunks_exact_mut(columns).zip(rows.chunks_exact(columns)).enumerate() {
-        for (value, &near) in values.iter_mut().zip(near).filter(|(_, near)| **near != NO_ROW) {
-            let apart = row as f64 - f64::from(near);
-            *value = apart * apart;
-        }
-        hull.transform(values, &mut roots);
-        if let Some(cells) = &mut cells {
-            let own = &mut cells[row * columns..(row + 1) * columns];
-            for (cell, &root) in own.iter_mut().zip(&roots).filter(|(_, root)| near[**root] != NO_ROW) {
-                *cell = near[root] as usize * columns + root;
-            }
+    for (row, own) in cells.chunks_exact_mut(distances.columns).enumerate() {
+        grid.extend_from_slice(distances.row(row, &mut line));
+        let near = distances.near(row);
+        for (cell, &root) in own.iter_mut().zip(&line.roots).filter(|(_, root)| near[**root] != NO_ROW) {
+            *cell = near[root] as usize * distances.columns + root;
         }
     }
-    grid
+    (grid, cells)
+}
+
+/// Distances that are worked out a row at a time, in any order: whole grids of them would cost more to hold
+/// than to make.
+pub struct Distances {
+    /// The row of the nearest marked cell in each cell's column.
+    nearest: Vec<u32>,
+    columns: usize,
+}
+
+impl Distances {
+    /// To the cells that are marked.
+    pub fn new(marked: &[bool], columns: usize) -> Self {
+        let columns = columns.max(1);
+        Distances { nearest: nearest_rows(marked, columns), columns }
+    }
+
+    fn rows(&self) -> usize {
+        self.nearest.len() / self.columns
+    }
+
+    fn near(&self, row: usize) -> &[u32] {
+        &self.nearest[row * self.columns..][..self.columns]
+    }
+
+    /// Squared distances of the cells of a row; infinite if no cell is marked.
+    pub fn row<'a>(&self, row: usize, line: &'a mut Line) -> &'a [f64] {
+        let heights = self.near(row).iter().map(|&near| match near {
+            NO_ROW => f64::INFINITY,
+            near => (row as f64 - f64::from(near)).powi(2),
+        });
+        line.values.clear();
+        line.values.extend(heights);
+        line.transform();
+        &line.values
+    }
 }
 
 /// Stands for no row.
@@ -70,47 +98,52 @@ fn nearest_rows(marked: &[bool], columns: usize) -> Vec<u32> {
     rows
 }
 
-/// The lower envelope of parabolas, one rooted in every sample.
+/// A row on its way, with the lower envelope of parabolas, one rooted in every sample.
 #[derive(Default)]
-struct Hull {
-    roots: Vec<(usize, f64)>,
+pub struct Line {
+    values: Vec<f64>,
+    /// Where each value comes from.
+    roots: Vec<usize>,
+    /// The parabolas of the envelope, and where each begins to be the lowest.
+    hull: Vec<(usize, f64)>,
     starts: Vec<f64>,
 }
 
-impl Hull {
-    /// Replaces heights by squared distances; `roots` becomes where each comes from.
-    fn transform(&mut self, line: &mut [f64], roots: &mut Vec<usize>) {
-        self.roots.clear();
-        self.starts.clear();
+impl Line {
+    /// Replaces heights by squared distances.
+    fn transform(&mut self) {
+        let Line { values, roots, hull, starts } = self;
+        hull.clear();
+        starts.clear();
         roots.clear();
-        roots.extend(0..line.len());
-        for (i, &height) in line.iter().enumerate() {
+        roots.extend(0..values.len());
+        for (i, &height) in values.iter().enumerate() {
             if height.is_infinite() {
                 continue;
             }
             let mut start = f64::NEG_INFINITY;
-            while let Some(&(j, other)) = self.roots.last() {
+            while let Some(&(j, other)) = hull.last() {
                 let (x, y) = (i as f64, j as f64);
                 start = ((height + x * x) - (other + y * y)) / (2.0 * (x - y));
-                if start > self.starts[self.starts.len() - 1] {
+                if start > starts[starts.len() - 1] {
                     break;
                 }
-                self.roots.pop();
-                self.starts.pop();
+                hull.pop();
+                starts.pop();
                 start = f64::NEG_INFINITY;
             }
-            self.roots.push((i, height));
-            self.starts.push(start);
+            hull.push((i, height));
+            starts.push(start);
         }
-        if self.roots.is_empty() {
+        if hull.is_empty() {
             return;
         }
         let mut k = 0;
-        for (x, value) in line.iter_mut().enumerate() {
-            while k + 1 < self.roots.len() && self.starts[k + 1] < x as f64 {
+        for (x, value) in values.iter_mut().enumerate() {
+            while k + 1 < hull.len() && starts[k + 1] < x as f64 {
                 k += 1;
             }
-            let (root, height) = self.roots[k];
+            let (root, height) = hull[k];
             let d = x as f64 - root as f64;
             *value = d * d + height;
             roots[x] = root;
@@ -120,9 +153,15 @@ impl Hull {
 
 /// Which cells of a grid the sides of closed contours pass, to within half a cell; what lies outside counts for
 /// the cells of the border.
-pub fn passed(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize, rows: usize) -> Vec<bool> {
+pub fn passed(
+    contours: &[impl AsRef<[Point]>],
+    origin: Point,
+    cell: f64,
+    columns: usize,
+    rows: usize,
+) -> Vec<bool> {
     let mut passed = vec![false; columns * rows];
-    for contour in contours {
+    for contour in contours.iter().map(AsRef::as_ref) {
         let sides = contour.last().into_iter().chain(contour).zip(contour);
         for (&p, &q) in sides {
             let steps = (p.distance(q) / (0.5 * cell)).ceil().clamp(1.0, 1e6);
@@ -137,14 +176,26 @@ pub fn passed(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize,
 }
 
 /// Which cells of a grid have their middle inside simple contours (even-odd), by scan lines.
-pub fn covered(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize, rows: usize) -> Vec<bool> {
+pub fn covered(
+    contours: &[impl AsRef<[Point]>],
+    origin: Point,
+    cell: f64,
+    columns: usize,
+    rows: usize,
+) -> Vec<bool> {
     let mut covered = vec![false; columns * rows];
     cover(contours, origin, cell, columns, &mut covered);
     covered
 }
 
 /// Marks the cells inside simple contours in a grid with this many columns.
-pub fn cover(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize, covered: &mut [bool]) {
+pub fn cover(
+    contours: &[impl AsRef<[Point]>],
+    origin: Point,
+    cell: f64,
+    columns: usize,
+    covered: &mut [bool],
+) {
     scan(
         contours,
         origin,
@@ -157,7 +208,7 @@ pub fn cover(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize, 
 
 /// Calls `visit` with the runs of cells inside simple contours in a grid of this many cells.
 pub fn runs(
-    contours: &[Vec<Point>],
+    contours: &[impl AsRef<[Point]>],
     origin: Point,
     cell: f64,
     (columns, cells): (usize, usize),
@@ -167,7 +218,13 @@ pub fn runs(
 }
 
 /// Marks the cells that contours wind around (nonzero), whatever crosses what.
-pub fn cover_wound(contours: &[Vec<Point>], origin: Point, cell: f64, columns: usize, covered: &mut [bool]) {
+pub fn cover_wound(
+    contours: &[impl AsRef<[Point]>],
+    origin: Point,
+    cell: f64,
+    columns: usize,
+    covered: &mut [bool],
+) {
     scan(
         contours,
         origin,
@@ -180,7 +237,7 @@ pub fn cover_wound(contours: &[Vec<Point>], origin: Point, cell: f64, columns: u
 
 /// Visits the runs of cells whose winding number is `inside`, by scan lines.
 fn scan(
-    contours: &[Vec<Point>],
+    contours: &[impl AsRef<[Point]>],
     origin: Point,
     cell: f64,
     (columns, cells): (usize, usize),
@@ -190,11 +247,11 @@ fn scan(
     let rows = cells / columns.max(1);
     // Rows whose middle lies in [low, high): each edge end counts once.
     let row = |y: f64| (((y - origin.y) / cell - 0.5).ceil().max(0.0) as usize).min(rows);
-    let ys = || contours.iter().flatten().map(|p| p.y);
+    let ys = || contours.iter().flat_map(AsRef::as_ref).map(|p| p.y);
     let (first, last) =
         (row(ys().fold(f64::INFINITY, f64::min)), row(ys().fold(f64::NEG_INFINITY, f64::max)));
     let mut crossings: Vec<Vec<(f64, i32)>> = vec![Vec::new(); last.saturating_sub(first)];
-    for contour in contours {
+    for contour in contours.iter().map(AsRef::as_ref) {
         let Some(&end) = contour.last() else { continue };
         let mut previous = end;
         for &p in contour {

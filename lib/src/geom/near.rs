@@ -10,6 +10,8 @@ const MOST_CELLS: f64 = 4e6;
 struct Cells {
     origin: Point,
     size: f64,
+    /// Cells in a unit of length.
+    per_unit: f64,
     columns: usize,
     rows: usize,
 }
@@ -18,15 +20,16 @@ impl Cells {
     fn new(bounds: Rect, size: f64) -> Self {
         let size = size.max((bounds.width() * bounds.height() / MOST_CELLS).sqrt()).max(f64::MIN_POSITIVE);
         let count = |side: f64| ((side / size).ceil().min(MOST_CELLS) as usize).max(1);
-        Cells { origin: bounds.origin(), size, columns: count(bounds.width()), rows: count(bounds.height()) }
+        let (columns, rows) = (count(bounds.width()), count(bounds.height()));
+        Cells { origin: bounds.origin(), size, per_unit: 1.0 / size, columns, rows }
     }
 
     fn column(&self, x: f64) -> usize {
-        (((x - self.origin.x) / self.size).max(0.0) as usize).min(self.columns - 1)
+        (((x - self.origin.x) * self.per_unit).max(0.0) as usize).min(self.columns - 1)
     }
 
     fn row(&self, y: f64) -> usize {
-        (((y - self.origin.y) / self.size).max(0.0) as usize).min(self.rows - 1)
+        (((y - self.origin.y) * self.per_unit).max(0.0) as usize).min(self.rows - 1)
     }
 
     fn index(&self, p: Point) -> usize {
@@ -143,19 +146,19 @@ impl PointGrid {
     }
 }
 
-/// Points with an owner each that are all known from the start: packed cell by cell, so that
+/// Points with something of each that are all known from the start: packed cell by cell, so that
 /// the cells of a row are looked at in one run.
 #[derive(Clone, Debug)]
-pub struct PointTable {
+pub struct PointTable<T> {
     cells: Cells,
     /// Where the points of each cell start, and the end of the last.
     starts: Vec<u32>,
-    points: Vec<(Point, u32)>,
+    points: Vec<(Point, T)>,
 }
 
-impl PointTable {
+impl<T: Copy + Default> PointTable<T> {
     /// A table over `bounds`; places outside fall into the border cells.
-    pub fn new(bounds: Rect, cell: f64, points: &[(Point, u32)]) -> Self {
+    pub fn new(bounds: Rect, cell: f64, points: impl Iterator<Item = (Point, T)> + Clone) -> Self {
         let cells = Cells::new(bounds, cell);
         let mut table = PointTable { cells, starts: Vec::new(), points: Vec::new() };
         table.fill(points);
@@ -163,26 +166,28 @@ impl PointTable {
     }
 
     /// Takes other points, in the same memory.
-    pub fn fill(&mut self, points: &[(Point, u32)]) {
+    pub fn fill(&mut self, points: impl Iterator<Item = (Point, T)> + Clone) {
         let PointTable { cells, starts, points: packed } = self;
         // Two more than cells: what is the end of one while they are counted becomes its start.
         starts.clear();
         starts.resize(cells.columns * cells.rows + 2, 0);
-        points.iter().for_each(|&(p, _)| starts[cells.index(p) + 2] += 1);
+        points.clone().for_each(|(p, _)| starts[cells.index(p) + 2] += 1);
         for i in 2..starts.len() {
             starts[i] += starts[i - 1];
         }
+        let count = *starts.last().unwrap_or(&0) as usize;
         packed.clear();
-        packed.resize(points.len(), (Point::ZERO, 0));
-        for &(p, owner) in points {
+        packed.reserve_exact(count);
+        packed.resize(count, Default::default());
+        points.for_each(|(p, of_it)| {
             let at = &mut starts[cells.index(p) + 1];
-            packed[*at as usize] = (p, owner);
+            packed[*at as usize] = (p, of_it);
             *at += 1;
-        }
+        });
     }
 
     /// The points within `radius`, and some beyond.
-    pub fn near(&self, at: Point, radius: f64) -> impl Iterator<Item = (Point, u32)> + '_ {
+    pub fn near(&self, at: Point, radius: f64) -> impl Iterator<Item = (Point, T)> + '_ {
         let (c0, c1) = (self.cells.column(at.x - radius), self.cells.column(at.x + radius));
         let rows = self.cells.row(at.y - radius)..=self.cells.row(at.y + radius);
         rows.flat_map(move |row| {
@@ -197,25 +202,132 @@ impl PointTable {
 #[derive(Clone, Debug)]
 pub struct SegmentGrid {
     cells: Cells,
+    /// The first and the last block of each cell.
+    ends: Vec<(u32, u32)>,
     /// In every cell that a segment's box touches, the segment itself: looking it up by a
     /// number would cost more than the copies.
-    content: Vec<Vec<(Point, Point, u32)>>,
+    blocks: Blocks,
+}
+
+/// A segment with its owner.
+type Owned = (Point, Point, u32);
+
+/// Some segments of a cell, and the number of its next block.
+#[derive(Clone, Debug)]
+struct Block {
+    segments: [Owned; BLOCK],
+    count: u32,
+    next: u32,
+}
+
+/// Segments of a block at most: more would leave more unused.
+const BLOCK: usize = 5;
+
+/// Stands for no block.
+const NO_BLOCK: u32 = u32::MAX;
+
+/// Blocks by number, in chunks: one that is full is never copied to grow.
+#[derive(Clone, Debug, Default)]
+struct Blocks {
+    chunks: Vec<Vec<Block>>,
+    count: usize,
+}
+
+impl Blocks {
+    const CHUNK: usize = 256;
+
+    fn get(&self, number: u32) -> Option<&Block> {
+        self.chunks.get(number as usize / Self::CHUNK)?.get(number as usize % Self::CHUNK)
+    }
+
+    fn get_mut(&mut self, number: u32) -> Option<&mut Block> {
+        self.chunks.get_mut(number as usize / Self::CHUNK)?.get_mut(number as usize % Self::CHUNK)
+    }
+
+    /// Adds one with this segment and tells its number.
+    fn add(&mut self, segment: Owned) -> u32 {
+        let chunk = self.count / Self::CHUNK;
+        if chunk == self.chunks.len() {
+            self.chunks.push(Vec::new());
+        }
+        self.chunks[chunk].push(Block { segments: [segment; BLOCK], count: 1, next: NO_BLOCK });
+        self.count += 1;
+        self.count as u32 - 1
+    }
+
+    /// Takes all out, and keeps the memory.
+    fn clear(&mut self) {
+        self.chunks.iter_mut().for_each(Vec::clear);
+        self.count = 0;
+    }
 }
 
 impl SegmentGrid {
     /// An empty grid over `bounds`; places outside fall into the border cells.
     pub fn new(bounds: Rect, cell: f64) -> Self {
         let cells = Cells::new(bounds, cell);
-        let content = vec![Vec::new(); cells.columns * cells.rows];
-        SegmentGrid { cells, content }
+        let ends = vec![(NO_BLOCK, NO_BLOCK); cells.columns * cells.rows];
+        SegmentGrid { cells, ends, blocks: Blocks::default() }
+    }
+
+    /// Takes all segments out.
+    pub fn clear(&mut self) {
+        self.ends.fill((NO_BLOCK, NO_BLOCK));
+        self.blocks.clear();
     }
 
     /// Adds a segment.
     pub fn insert(&mut self, a: Point, b: Point, owner: u32) {
         let (low, high) = (Point::new(a.x.min(b.x), a.y.min(b.y)), Point::new(a.x.max(b.x), a.y.max(b.y)));
         for index in self.cells.covered(low, high) {
-            self.content[index].push((a, b, owner));
+            let last = self.ends[index].1;
+            match self.blocks.get_mut(last) {
+                Some(block) if (block.count as usize) < BLOCK => {
+                    block.segments[block.count as usize] = (a, b, owner);
+                    block.count += 1;
+                }
+                _ => {
+                    let number = self.blocks.add((a, b, owner));
+                    match self.blocks.get_mut(last) {
+                        Some(block) => block.next = number,
+                        None => self.ends[index].0 = number,
+                    }
+                    self.ends[index].1 = number;
+                }
+            }
         }
+    }
+
+    /// Takes out all of an owner's segments that pass where the sides of a closed contour do.
+    pub fn remove_contour(&mut self, contour: &[Point], owner: u32) {
+        let Some(&last) = contour.last() else { return };
+        let mut previous = last;
+        for &p in contour {
+            let low = Point::new(previous.x.min(p.x), previous.y.min(p.y));
+            let high = Point::new(previous.x.max(p.x), previous.y.max(p.y));
+            for index in self.cells.covered(low, high) {
+                let mut number = self.ends[index].0;
+                while let Some(block) = self.blocks.get_mut(number) {
+                    let mut kept = 0;
+                    for k in 0..block.count as usize {
+                        if block.segments[k].2 != owner {
+                            block.segments[kept] = block.segments[k];
+                            kept += 1;
+                        }
+                    }
+                    block.count = kept as u32;
+                    number = block.next;
+                }
+            }
+            previous = p;
+        }
+    }
+
+    /// The segments in a cell.
+    fn content(&self, index: usize) -> impl Iterator<Item = &Owned> {
+        let block = |number: u32| self.blocks.get(number);
+        let blocks = std::iter::successors(block(self.ends[index].0), move |last| block(last.next));
+        blocks.flat_map(|block| &block.segments[..block.count as usize])
     }
 
     /// Adds the sides of a closed contour.
@@ -234,7 +346,7 @@ impl SegmentGrid {
         let low = Point::new(a.x.min(b.x) - radius, a.y.min(b.y) - radius);
         let high = Point::new(a.x.max(b.x) + radius, a.y.max(b.y) + radius);
         for index in self.cells.covered(low, high) {
-            for &(p, q, owner) in &self.content[index] {
+            for &(p, q, owner) in self.content(index) {
                 if !visit(p, q, owner) {
                     return;
                 }
@@ -254,7 +366,7 @@ impl SegmentGrid {
         at: Point,
         reach: f64,
         (strokes, widest): (&[f64], f64),
-    ) -> (f64, Option<(Point, Point, u32)>) {
+    ) -> (f64, Option<Owned>) {
         if widest == 0.0 {
             return self.nearest(at, reach, |_| 0.0, 0.0);
         }
@@ -268,7 +380,7 @@ impl SegmentGrid {
         reach: f64,
         stroke: impl Fn(u32) -> f64,
         widest: f64,
-    ) -> (f64, Option<(Point, Point, u32)>) {
+    ) -> (f64, Option<Owned>) {
         let (column, row) = (self.cells.column(at.x) as i64, self.cells.row(at.y) as i64);
         let all = self.cells.columns.max(self.cells.rows) as i64;
         let rings = (((reach + widest) / self.cells.size).min(1e9) as i64 + 1).min(all);
@@ -283,11 +395,11 @@ impl SegmentGrid {
                 break;
             }
             self.cells.ring(column, row, ring, |index| {
-                let content = &self.content[index];
-                if content.is_empty() || self.cells.distance_squared(at, index) >= squared {
+                let is_empty = self.ends[index].0 == NO_BLOCK;
+                if is_empty || self.cells.distance_squared(at, index) >= squared {
                     return;
                 }
-                for &(p, q, owner) in content {
+                for &(p, q, owner) in self.content(index) {
                     let apart = point_segment_squared(at, p, q);
                     if apart < squared {
                         let distance = apart.sqrt() - stroke(owner);
@@ -387,7 +499,7 @@ mod tests {
         let mut rng = Rng::new(3);
         let points: Vec<(Point, u32)> =
             (0..300).map(|i| (Point::new(rng.between(-5.0, 105.0), rng.between(-5.0, 105.0)), i)).collect();
-        let table = PointTable::new(Rect::new(0.0, 0.0, 100.0, 100.0), 7.0, &points);
+        let table = PointTable::new(Rect::new(0.0, 0.0, 100.0, 100.0), 7.0, points.iter().copied());
         for &(at, _) in &points {
             let within = |&(p, _): &(Point, u32)| p.distance(at) < 11.0;
             let mut found: Vec<u32> = table.near(at, 11.0).filter(within).map(|(_, owner)| owner).collect();
@@ -409,6 +521,11 @@ mod tests {
             .collect();
         let mut grid = SegmentGrid::new(Rect::new(0.0, 0.0, 100.0, 100.0), 3.0);
         segments.iter().for_each(|&(p, q)| grid.insert(p, q, 0));
+        // What is taken out again leaves no trace.
+        let contour = [Point::new(10.0, 10.0), Point::new(90.0, 50.0), Point::new(10.0, 90.0)];
+        grid.insert_contour(&contour, 1);
+        segments.iter().for_each(|&(p, q)| grid.insert(p, q, 2));
+        grid.remove_contour(&contour, 1);
         for i in 0..200 {
             let at = point();
             let brute = segments.iter().map(|&(p, q)| point_segment(at, p, q)).fold(50.0, f64::min);

@@ -10,9 +10,8 @@ use std::sync::Arc;
 /// continuously differentiable, so that smooth outlines stay smooth.
 #[derive(Clone, Debug)]
 pub struct Warp {
-    /// The samples that are felt where any push is.
-    samples: Arc<PointTable>,
-    pushes: Arc<[Vec2]>,
+    /// The samples that are felt where any push is, with their pushes.
+    samples: Arc<PointTable<Vec2>>,
     /// How much of the pushes is done.
     share: f64,
     radius: f64,
@@ -34,25 +33,30 @@ fn fade(radius: f64, step: f64) -> f64 {
     FADE * 32.0 / 35.0 * radius / step
 }
 
-/// Samples with their numbers, some of them.
-fn table(samples: &[Point], size: f64, is_in: impl Fn(usize) -> bool) -> PointTable {
-    let numbered: Vec<(Point, u32)> =
-        samples.iter().zip(0..).filter(|&(_, i)| is_in(i as usize)).map(|(&p, i)| (p, i)).collect();
-    PointTable::new(bounds(numbered.iter().map(|(p, _)| *p)).unwrap_or_default(), size, &numbered)
+/// Points in cells of a size.
+fn table<T: Copy + Default>(points: impl Iterator<Item = (Point, T)> + Clone, size: f64) -> PointTable<T> {
+    PointTable::new(bounds(points.clone().map(|(p, _)| p)).unwrap_or_default(), size, points)
 }
 
 impl Warp {
     /// Pushes at samples of an outline that are about `step` apart.
-    pub fn new(samples: &[Point], pushes: Vec<Vec2>, radius: f64, step: f64) -> Self {
+    pub fn new(samples: &[Point], pushes: &[Vec2], radius: f64, step: f64) -> Self {
         // What lies farther than twice the radius from any push weighs nothing where one is felt.
-        let pushed = table(samples, 2.0 * radius, |i| pushes[i] != Vec2::ZERO);
-        let is_near = |i: usize| {
-            let at = samples[i];
-            pushes[i] != Vec2::ZERO
-                || pushed.near(at, 2.0 * radius).any(|(p, _)| p.distance_squared(at) < 4.0 * radius * radius)
+        let all = samples.iter().copied().zip(pushes.iter().copied());
+        let pushed = table(all.clone().filter(|(_, push)| *push != Vec2::ZERO), 2.0 * radius);
+        let is_near = |(at, push): &(Point, Vec2)| {
+            *push != Vec2::ZERO
+                || pushed
+                    .near(*at, 2.0 * radius)
+                    .any(|(p, _)| p.distance_squared(*at) < 4.0 * radius * radius)
         };
-        let samples = Arc::new(table(samples, radius, is_near));
-        Warp { samples, pushes: pushes.into(), share: 1.0, radius, fade: fade(radius, step) }
+        let near: Vec<(Point, Vec2)> = all.filter(is_near).collect();
+        Warp {
+            samples: Arc::new(table(near.iter().copied(), radius)),
+            share: 1.0,
+            radius,
+            fade: fade(radius, step),
+        }
     }
 
     /// The same with pushes that are shorter.
@@ -63,9 +67,8 @@ impl Warp {
     /// True if a push may be felt within `distance` of a place.
     pub fn reaches(&self, p: Point, distance: f64) -> bool {
         let reach = self.radius + distance;
-        let is_felt = |(sample, i): (Point, u32)| {
-            self.pushes[i as usize] != Vec2::ZERO && (sample - p).hypot2() < reach * reach
-        };
+        let is_felt =
+            |(sample, push): (Point, Vec2)| push != Vec2::ZERO && (sample - p).hypot2() < reach * reach;
         self.samples.near(p, reach).any(is_felt)
     }
 
@@ -78,11 +81,11 @@ impl Warp {
     pub fn point(&self, p: Point) -> Point {
         let (mut sum, mut total) = (Vec2::ZERO, self.fade);
         let squared_radius = self.radius * self.radius;
-        self.samples.near(p, self.radius).for_each(|(sample, i)| {
+        self.samples.near(p, self.radius).for_each(|(sample, push)| {
             let squared = (p - sample).hypot2();
             if squared < squared_radius {
                 let w = weight(squared / squared_radius);
-                sum += w * self.pushes[i as usize];
+                sum += w * push;
                 total += w;
             }
         });
@@ -95,11 +98,10 @@ impl Warp {
         let (mut sum, mut total) = (Vec2::ZERO, self.fade);
         // How both change with p, by x and y.
         let (mut sum_by, mut total_by) = ([Vec2::ZERO; 2], Vec2::ZERO);
-        self.samples.near(p, self.radius).for_each(|(sample, i)| {
+        self.samples.near(p, self.radius).for_each(|(sample, push)| {
             let from = p - sample;
             let rest = 1.0 - from.hypot2() / squared_radius;
             if rest > 0.0 {
-                let push = self.pushes[i as usize];
                 let w = rest * rest * rest;
                 sum += w * push;
                 total += w;
@@ -124,8 +126,8 @@ impl Warp {
 pub struct Ties {
     /// Where each sample's row begins.
     starts: Vec<u32>,
-    /// Samples near each one, itself too, with their weights.
-    near: Vec<(u32, f64)>,
+    /// Samples near each one, itself too, with their weights. There are many, and single precision will do.
+    near: Vec<(u32, f32)>,
 }
 
 impl Ties {
@@ -134,24 +136,22 @@ impl Ties {
         if !is_pushed.contains(&true) {
             return Ties { starts: vec![0; samples.len() + 1], near: Vec::new() };
         }
-        let table = table(samples, radius, |_| true);
+        let all = table(samples.iter().copied().zip(0u32..), radius);
+        let pushed = samples.iter().zip(is_pushed).filter(|(_, is_pushed)| **is_pushed);
+        let pushed = table(pushed.map(|(&p, _)| (p, ())), radius);
         let (squared_radius, fade) = (radius * radius, fade(radius, step));
-        let near = |i: usize| {
-            let p = samples[i];
-            let near = table.near(p, radius).map(move |(q, j)| (j, (p - q).hypot2()));
-            near.filter(move |(_, squared)| *squared < squared_radius)
-        };
-        let mut is_moved = vec![false; samples.len()];
-        for i in (0..samples.len()).filter(|&i| is_pushed[i]) {
-            near(i).for_each(|(j, _)| is_moved[j as usize] = true);
-        }
-        let mut ties = Ties { starts: vec![0], near: Vec::new() };
-        for (i, &is_moved) in is_moved.iter().enumerate() {
-            if is_moved {
-                let start = ties.near.len();
-                ties.near.extend(near(i).map(|(j, squared)| (j, weight(squared / squared_radius))));
-                let total = fade + ties.near[start..].iter().map(|(_, w)| w).sum::<f64>();
-                ties.near[start..].iter_mut().for_each(|(_, w)| *w /= total);
+        let room = 8 * is_pushed.iter().filter(|pushed| **pushed).count();
+        let mut ties = Ties { starts: Vec::with_capacity(samples.len() + 1), near: Vec::with_capacity(room) };
+        ties.starts.push(0);
+        let mut row: Vec<(u32, f64)> = Vec::new();
+        for (&p, &is_pushed) in samples.iter().zip(is_pushed) {
+            if is_pushed || pushed.near(p, radius).any(|(q, _)| (p - q).hypot2() < squared_radius) {
+                row.clear();
+                let squared = all.near(p, radius).map(|(q, j)| (j, (p - q).hypot2()));
+                let near = squared.filter(|(_, squared)| *squared < squared_radius);
+                row.extend(near.map(|(j, squared)| (j, weight(squared / squared_radius))));
+                let total = fade + row.iter().map(|(_, w)| w).sum::<f64>();
+                ties.near.extend(row.iter().map(|&(j, w)| (j, (w / total) as f32)));
             }
             ties.starts.push(ties.near.len() as u32);
         }
@@ -159,7 +159,7 @@ impl Ties {
     }
 
     /// Samples near one, with their weights; none if it is not moved.
-    fn row(&self, i: usize) -> &[(u32, f64)] {
+    fn row(&self, i: usize) -> &[(u32, f32)] {
         &self.near[self.starts[i] as usize..self.starts[i + 1] as usize]
     }
 
@@ -180,7 +180,7 @@ impl Ties {
 
     /// How far a sample moves.
     pub fn push(&self, pushes: &[Vec2], i: usize) -> Vec2 {
-        self.row(i).iter().fold(Vec2::ZERO, |sum, &(j, w)| sum + w * pushes[j as usize])
+        self.row(i).iter().fold(Vec2::ZERO, |sum, &(j, w)| sum + f64::from(w) * pushes[j as usize])
     }
 }
 
@@ -201,7 +201,7 @@ mod tests {
         #[test]
         fn directions_go_with_points(x in -14.0..14.0f64, y in -14.0..14.0f64) {
             let (samples, pushes) = circle();
-            let warp = Warp::new(&samples, pushes, 3.0, 0.7);
+            let warp = Warp::new(&samples, &pushes, 3.0, 0.7);
             let (at, h) = (Point::new(x, y), 1e-6);
             let (mut du, mut dv) = (Vec2::new(1.0, 0.0), Vec2::new(0.0, 1.0));
             prop_assert!(warp.jet(at, [&mut du, &mut dv]).distance(warp.point(at)) < 1e-12);
@@ -216,10 +216,10 @@ mod tests {
     fn samples_move_as_their_ties_say() {
         let (samples, pushes) = circle();
         let (ties, warp) =
-            (Ties::new(&samples, &[true; 90], 3.0, 0.7), Warp::new(&samples, pushes.clone(), 3.0, 0.7));
+            (Ties::new(&samples, &[true; 90], 3.0, 0.7), Warp::new(&samples, &pushes, 3.0, 0.7));
         for (i, &p) in samples.iter().enumerate() {
             let moved = warp.point(p) - p;
-            assert!((moved - ties.push(&pushes, i)).hypot() < 1e-12);
+            assert!((moved - ties.push(&pushes, i)).hypot() < 1e-7);
             let near: Vec<f64> = pushes.iter().map(|push| push.hypot()).collect();
             let far: Vec<f64> = near.iter().map(|length| -length).collect();
             assert!(moved.hypot() <= -ties.least(&far, i), "no farther than the farthest near by");

@@ -106,7 +106,7 @@ pub(super) fn fill(
     let &Ground { prepared, templates, flows, .. } = ground;
     let kinds = |index: usize| Kinds { templates, motifs: &motifs[index], flow: flows[index].as_ref() };
     let mut covered = placement.silhouettes();
-    covered.extend(fillers.iter().flat_map(|filler| filler.outlines.iter().cloned()));
+    covered.extend(fillers.iter().flat_map(|filler| &filler.outlines));
     let mut all: Vec<(usize, Gaps)> = Vec::new();
     for (index, field) in prepared.fields.iter().enumerate().filter(|(i, _)| !motifs[*i].is_empty()) {
         if !go_on(0.5 * index as f64 / prepared.fields.len() as f64) {
@@ -175,18 +175,15 @@ fn fill_field(
             return false;
         }
         // What was placed since then may have taken the room.
-        let free = gaps.clearance(inked(placement), place.at());
-        if free + gaps.fineness() < smallest {
-            continue;
-        }
+        let near = (place.at(), gaps.fineness());
+        let Some(left) = gaps.room_near(inked(placement), near, smallest) else { continue };
         let (centre, radius) = gaps.centred(inked(placement), place.at(), (smallest, ROUNDS));
         if radius < smallest {
             continue;
         }
         // Whether the place itself has room when the middle is taken shows only then.
         if centre.distance(place.at()) > gaps.fineness() {
-            let most = (free + gaps.fineness()).min(radius.next_down());
-            heap.push(Place::new(place.at(), most.max(0.0)));
+            heap.push(Place::new(place.at(), left.most.min(radius.next_down()).max(0.0)));
         }
         if radius < place.clearance() && heap.peek().is_some_and(|next| radius < next.clearance()) {
             // The estimate was too good, or a filler placed since then took some of the room.

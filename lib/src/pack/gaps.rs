@@ -2,7 +2,7 @@
 
 use super::prepare::Field;
 use crate::geom::boolean::{Contour, touches};
-use crate::geom::distance::{cover, covered, passed, squared_distances};
+use crate::geom::distance::{Distances, Line, cover, covered, passed};
 use crate::geom::near::{PointGrid, SegmentGrid, foot, point_segment};
 use crate::geom::polyline;
 use crate::geom::region::Region;
@@ -52,6 +52,15 @@ impl Inked<'_> {
 /// A side of an outline, and its owner.
 type Blocker = (Point, Point, u32);
 
+/// What room there may be near a place.
+#[derive(Clone, Copy)]
+pub(super) struct Room {
+    /// The clearance is no more than this.
+    pub most: f64,
+    /// What is nearest to the place, and to another beside it.
+    blockers: [Option<Blocker>; 2],
+}
+
 /// What is covered in one container: elements by cells, dots by their circles. A distance to
 /// an outline is the same from inside, so this has to be known beside it.
 pub(super) struct Gaps<'a> {
@@ -71,7 +80,7 @@ pub(super) struct Gaps<'a> {
     dots: PointGrid,
     radii: Vec<f64>,
     /// Clearance of each cell's middle, about.
-    estimates: Vec<f64>,
+    estimates: Vec<f32>,
     emptiness: (f64, f64),
 }
 
@@ -81,7 +90,7 @@ impl<'a> Gaps<'a> {
     pub fn new(
         field: &Field,
         region: &'a Region,
-        silhouettes: &[Contour],
+        silhouettes: &[&Contour],
         (largest, gap, step): (f64, f64, f64),
     ) -> Self {
         let bounds = region.bounds();
@@ -91,8 +100,8 @@ impl<'a> Gaps<'a> {
         let gap = field.sizes.safe(gap);
         let (columns, rows) = ((bounds.width() / step) as usize + 1, (bounds.height() / step) as usize + 1);
         let around = bounds.inflate(field.sizes.spacing, field.sizes.spacing);
-        let near: Vec<Contour> =
-            silhouettes.iter().filter(|contour| touches(contour, around)).cloned().collect();
+        let near: Vec<&Contour> =
+            silhouettes.iter().copied().filter(|contour| touches(contour, around)).collect();
         let mut gaps = Gaps {
             region,
             step,
@@ -118,29 +127,35 @@ impl<'a> Gaps<'a> {
         let rows = self.elements.len() / columns;
         let in_region = covered(region.contours(), self.origin, step, columns, rows);
         let outside: Vec<bool> = in_region.iter().map(|inside| !inside).collect();
-        let (to_elements, to_outside) = rayon::join(
-            || squared_distances(&self.elements, columns),
-            || squared_distances(&outside, columns),
-        );
+        // A slit may be so narrow that no cell has its middle in it.
+        let mut edge_or_outside = passed(region.contours(), self.origin, step, columns, rows);
+        edge_or_outside.iter_mut().zip(&outside).for_each(|(passed, outside)| *passed |= outside);
+        let to = [&self.elements, &outside, &edge_or_outside].map(|marked| Distances::new(marked, columns));
         // Half a cell lies between the middle of a covered cell and its edge.
         let distance = |squared: f64| (squared.sqrt() - 0.5) * step;
-        let (mut count, mut sum) = (0.0, 0.0);
-        self.estimates = (0..self.elements.len())
-            .map(|i| {
-                let (to_elements, to_outside) = (distance(to_elements[i]), distance(to_outside[i]));
+        let far = (self.reach / step + 2.0).powi(2);
+        let fill = |lines: &mut [Line; 3], (row, (estimates, inner)): (usize, (&mut [f32], &mut [bool]))| {
+            let [to_elements, to_outside, to_edge] = lines;
+            let rows = [to[0].row(row, to_elements), to[1].row(row, to_outside), to[2].row(row, to_edge)];
+            let (mut count, mut sum) = (0.0, 0.0);
+            for x in 0..columns {
+                let i = row * columns + x;
+                let (to_elements, to_outside) = (distance(rows[0][x]), distance(rows[1][x]));
                 if in_region[i] && !self.elements[i] {
                     count += 1.0;
                     sum += to_elements.min(to_outside + edge);
                 }
-                (to_elements - gap).min(to_outside)
-            })
-            .collect();
-        // A slit may be so narrow that no cell has its middle in it.
-        let mut edge_or_outside = passed(region.contours(), self.origin, step, columns, rows);
-        edge_or_outside.iter_mut().zip(outside).for_each(|(passed, outside)| *passed |= outside);
-        let far = (self.reach / step + 2.0).powi(2);
-        self.inner =
-            squared_distances(&edge_or_outside, columns).into_iter().map(|squared| squared > far).collect();
+                estimates[x] = (to_elements - gap).min(to_outside) as f32;
+                inner[x] = rows[2][x] > far;
+            }
+            (count, sum)
+        };
+        let mut estimates = vec![0.0; self.elements.len()];
+        let mut inner = vec![false; self.elements.len()];
+        let rows = estimates.par_chunks_exact_mut(columns).zip(inner.par_chunks_exact_mut(columns));
+        let sums: Vec<(f64, f64)> = rows.enumerate().map_init(Default::default, fill).collect();
+        let (count, sum) = sums.iter().fold((0.0, 0.0), |all, one| (all.0 + one.0, all.1 + one.1));
+        (self.estimates, self.inner) = (estimates, inner);
         let length = |contour: &Contour| polyline::length(&closed(contour));
         let strip = edge * region.contours().iter().map(length).sum::<f64>();
         self.emptiness = (step * step * count + strip, step * step * sum + strip * edge / 2.0);
@@ -158,7 +173,7 @@ impl<'a> Gaps<'a> {
         let mut heap = BinaryHeap::new();
         for (i, &free) in self.estimates.iter().enumerate() {
             // Half a diagonal lies between a sample and its cell's middle, at both ends.
-            let most = free + std::f64::consts::SQRT_2 * self.step;
+            let most = f64::from(free) + std::f64::consts::SQRT_2 * self.step;
             if most <= smallest || self.elements[i] {
                 continue;
             }
@@ -173,18 +188,21 @@ impl<'a> Gaps<'a> {
     /// Every place with room for more than `smallest` is nearer than [`Gaps::fineness`] to one of these, whose
     /// clearances are no less than those of the places near them.
     pub fn places(&self, inked: Inked, smallest: f64) -> BinaryHeap<Place> {
-        // A cell has room only if its middle has, but for the way from there to its corners.
+        const WAYS: [(f64, f64); 4] = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
         let to_corner = self.step * std::f64::consts::FRAC_1_SQRT_2;
-        let free = |at: Point| self.clearance(inked, at);
         let quarters = |i: usize| {
             let middle = self.middle(i);
-            let is_roomy =
-                self.estimates[i] + 2.0 * to_corner > smallest && free(middle) + to_corner > smallest;
-            let ways = if is_roomy { &[(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)][..] } else { &[] };
+            // An estimate may be as much too small as it is to a corner.
+            let is_roomy = f64::from(self.estimates[i]) + 2.0 * to_corner > smallest;
+            let near = if is_roomy { self.room_near(inked, (middle, to_corner), smallest) } else { None };
+            let ways = if near.is_some() { &WAYS[..] } else { &[] };
             ways.iter().filter_map(move |&(x, y)| {
                 let at = middle + self.step / 4.0 * Vec2::new(x, y);
-                let most = free(at) + self.fineness();
-                (most > smallest).then(|| Place::new(at, most))
+                let blockers = near?.blockers;
+                if self.blocked(inked, &blockers, at, smallest - self.fineness()) {
+                    return None;
+                }
+                Some(Place::new(at, self.room_near(inked, (at, self.fineness()), smallest)?.most))
             })
         };
         let places: Vec<Place> = (0..self.estimates.len()).into_par_iter().flat_map_iter(quarters).collect();
@@ -194,6 +212,32 @@ impl<'a> Gaps<'a> {
     /// Half a diagonal of a quarter of a cell.
     pub fn fineness(&self) -> f64 {
         self.step * std::f64::consts::FRAC_1_SQRT_2 / 2.0
+    }
+
+    /// The room in a disc; nothing if there is certainly no place in it with more than `least`.
+    pub fn room_near(&self, inked: Inked, (at, radius): (Point, f64), least: f64) -> Option<Room> {
+        let (free, blocker) = self.clearance_and_blocker(inked, at);
+        let most = free + radius;
+        if most <= least {
+            return None;
+        }
+        // In a channel, what lies on the other side of it shows that there is none.
+        let Some(one) = blocker.filter(|_| free <= least) else {
+            return Some(Room { most, blockers: [blocker, None] });
+        };
+        let kept = |(p, q, owner): Blocker| (foot(at, p, q), least + self.gap + inked.stroke(owner));
+        let (foot, _) = kept(one);
+        let away = (at - foot) / at.distance(foot).max(f64::MIN_POSITIVE);
+        let (_, other) = self.clearance_and_blocker(inked, at + radius * away);
+        let is_kept = other.is_some_and(|other| is_covered((at, radius), [kept(one), kept(other)]));
+        (!is_kept).then_some(Room { most, blockers: [blocker, other] })
+    }
+
+    /// True if these leave no more than this `clearance` at a place.
+    fn blocked(&self, inked: Inked, blockers: &[Option<Blocker>], at: Point, clearance: f64) -> bool {
+        let leaves =
+            |&(p, q, owner): &Blocker| point_segment(at, p, q) - inked.stroke(owner) - self.gap <= clearance;
+        blockers.iter().flatten().any(leaves)
     }
 
     /// Free radius at a place: to the outlines less the gap, to the boundary in full. Negative
@@ -232,18 +276,12 @@ impl<'a> Gaps<'a> {
         // What stood in the way before mostly does so again: no need to look for what is nearest.
         let mut blockers = [blocker, None, None, None];
         let mut oldest = 1;
-        let blocked = |blockers: &[Option<Blocker>], at: Point, best: f64| {
-            blockers
-                .iter()
-                .flatten()
-                .any(|&(p, q, owner)| point_segment(at, p, q) - inked.stroke(owner) - self.gap <= best)
-        };
         for _ in 0..rounds {
             let moved = WAYS.into_iter().any(|ways| {
                 let before = best;
                 for (x, y) in ways {
                     let next = at + step * Vec2::new(x, y);
-                    if blocked(&blockers, next, best) {
+                    if self.blocked(inked, &blockers, next, best) {
                         continue;
                     }
                     let (free, blocker) = self.clearance_and_blocker(inked, next);
@@ -322,5 +360,55 @@ impl<'a> Gaps<'a> {
     fn middle(&self, cell: usize) -> Point {
         self.origin
             + Vec2::new((cell % self.columns) as f64 + 0.5, (cell / self.columns) as f64 + 0.5) * self.step
+    }
+}
+
+/// True if a disc lies wholly in two others.
+fn is_covered((centre, radius): (Point, f64), others: [(Point, f64); 2]) -> bool {
+    let is_in = |at: Point, (centre, radius): (Point, f64)| at.distance(centre) <= radius;
+    let [one, other] = others;
+    let to_one = one.0 - centre;
+    let apart = to_one.hypot();
+    if apart + radius <= one.1 {
+        return true;
+    }
+    // What the first leaves of the disc is a lens between two arcs, the inner one bent outwards: it lies in
+    // the other if the outer arc does, that is, if its ends do and its farthest place.
+    let along = (one.1 * one.1 - apart * apart - radius * radius) / (2.0 * apart);
+    if apart == 0.0 || along.abs() >= radius {
+        return other.0.distance(centre) + radius <= other.1;
+    }
+    let x = to_one / apart;
+    let beside = (radius * radius - along * along).sqrt();
+    let ends = [beside, -beside].map(|beside| centre - along * x + beside * Vec2::new(-x.y, x.x));
+    let farthest = centre + radius * (centre - other.0).normalize();
+    ends.into_iter().all(|end| is_in(end, other)) && (is_in(farthest, one) || is_in(farthest, other))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_disc_is_covered_if_all_its_places_are(
+            one in (-2.0..2.0f64, -2.0..2.0f64, 0.1..3.0f64),
+            other in (-2.0..2.0f64, -2.0..2.0f64, 0.1..3.0f64),
+        ) {
+            let others = [one, other].map(|(x, y, radius)| (Point::new(x, y), radius));
+            let is_in = |at: Point| others.iter().any(|(centre, radius)| at.distance(*centre) <= *radius);
+            let ring = |radius: f64| (0..60).map(move |k| {
+                let angle = f64::from(k) / 60.0 * 2.0 * std::f64::consts::PI;
+                (radius * Vec2::new(libm::cos(angle), libm::sin(angle))).to_point()
+            });
+            let mut places = (0..=20).flat_map(|k| ring(f64::from(k) / 20.0));
+            let seems_covered = places.all(is_in);
+            let covers = is_covered((Point::ZERO, 1.0), others);
+            prop_assert!(seems_covered || !covers);
+            // Between the places there may be a little more, but not much.
+            let larger = others.map(|(centre, radius)| (centre, radius + 0.1));
+            prop_assert!(!seems_covered || is_covered((Point::ZERO, 1.0), larger));
+        }
     }
 }

@@ -47,7 +47,7 @@ pub(super) struct Ground<'a> {
 pub(super) fn insert(
     &Ground { prepared, templates, usable, flows }: &Ground,
     bodies: &[Body],
-    (silhouettes, stroke): (&[Contour], f64),
+    (silhouettes, stroke): (&[&Contour], f64),
     rng: &mut Rng,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> (Vec<Body>, bool) {

@@ -49,6 +49,7 @@ mod thread;
 pub use params::Params;
 
 use crate::field::{DirectionField, LineKind};
+use crate::geom::boolean::Contour;
 use crate::palette::palette;
 use crate::progress::Progress;
 use crate::rng::Rng;
@@ -164,15 +165,17 @@ fn compose(ground: &Ground, blobs: &[Blob], rng: &mut Rng, progress: &mut dyn Pr
     let refine = |bodies: &mut Vec<_>, part: Range<usize>, progress: &mut dyn Progress| {
         refine::refine(bodies, templates, flows, prepared, part, |done| progress.step("refine", done))
     };
-    let insert = |bodies: &[_], silhouettes: (&[_], f64), rng: &mut Rng, progress: &mut dyn Progress| {
-        insert::insert(ground, bodies, silhouettes, rng, |done| progress.step("insert", done))
-    };
+    let insert =
+        |bodies: &[_], silhouettes: (&[&Contour], f64), rng: &mut Rng, progress: &mut dyn Progress| {
+            insert::insert(ground, bodies, silhouettes, rng, |done| progress.step("insert", done))
+        };
     // Some room shows only once the first elements have moved.
     let iterations = prepared.fields.iter().map(|field| field.params.iterations).max().unwrap_or(0);
     let inserted_at = iterations / 3;
     complete &= refine(&mut bodies, 0..inserted_at, progress);
     if complete {
-        let silhouettes: Vec<_> = bodies.iter().map(refine::Body::outline).collect();
+        let envelopes: Vec<_> = bodies.iter().map(refine::Body::outline).collect();
+        let silhouettes: Vec<_> = envelopes.iter().collect();
         let (small, finished) = insert(&bodies, (&silhouettes, 0.0), &mut rng.fork(), progress);
         bodies.extend(small);
         complete = finished && refine(&mut bodies, inserted_at..iterations, progress);

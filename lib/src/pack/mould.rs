@@ -90,11 +90,8 @@ pub(super) fn mould(
         .map(|filler| Moving { gives_way: filler.motif.gives_way(), ..fine(filler.field, &filler.outlines) });
     let mut all: Vec<Moving> = of_elements.chain(of_fillers).collect();
     let cell = prepared.fields.iter().map(|field| field.sizes.safe_gap()).fold(0.0, f64::max);
-    let mut others = Others {
-        table: PointTable::new(prepared.bounds, cell, &[]),
-        samples: Vec::new(),
-        gives_way: Vec::new(),
-    };
+    let mut others =
+        Others { table: PointTable::new(prepared.bounds, cell, std::iter::empty()), gives_way: Vec::new() };
     let mut complete = true;
     for (k, &stage) in stages.iter().enumerate() {
         let skin = |moving: &Moving| Skin::new(moving, &prepared.fields[moving.field], stage);
@@ -159,7 +156,7 @@ impl Moving {
         if !skin.is_pushed() {
             return;
         }
-        let warp = Warp::new(&skin.before, skin.pushes, skin.radius, skin.step);
+        let warp = Warp::new(&skin.before, &skin.pushes, skin.radius, skin.step);
         self.contours.iter_mut().flatten().for_each(|p| *p = warp.point(*p));
         self.warps.push(warp);
     }
@@ -171,10 +168,8 @@ struct Skin {
     /// Before, and as they are pushed.
     before: Vec<Point>,
     now: Vec<Point>,
-    /// The samples before and after each in its contour.
+    /// The samples beside each in its contour, so that its inside lies on the left from one to the other.
     beside: Vec<[u32; 2]>,
-    /// 1 or -1, by which way the contour runs.
-    sense: Vec<f64>,
     /// The samples that others look at.
     seen: Vec<u32>,
     pushes: Vec<Vec2>,
@@ -197,37 +192,42 @@ impl Skin {
         const FARTHEST: f64 = 0.0425;
         let radius = stage.radius * field.sizes.spacing;
         let step = (radius / SAMPLES).min(FARTHEST * field.sizes.spacing);
-        let (mut before, mut beside, mut sense) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut corners, mut counts, mut from, mut held) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        for (contour, corners_held) in moving.contours.iter().zip(&moving.held) {
-            let Samples { points, is_corner, from: corner } = sampled(contour, step);
-            counts.push(points.len());
-            held.extend(corner.iter().map(|&k| {
-                let k = k as usize;
-                corners_held[k].both(corners_held[(k + 1) % contour.len()])
-            }));
-            from.extend(corner);
-            let (start, n) = (before.len() as u32, points.len() as u32);
-            beside.extend((0..n).map(|i| [start + (i + n - 1) % n, start + (i + 1) % n]));
-            sense.extend(std::iter::repeat_n(signed_area(contour).signum(), points.len()));
-            before.extend(points);
-            corners.extend(is_corner);
-        }
+        let others = OTHERS * field.sizes.spacing;
         let moves = moving.gives_way && is_moulded(field);
-        let is_pushed: Vec<bool> =
-            held.iter().map(|held: &Held| moves && !held.closed && !held.still).collect();
+        let is_pushed = |held: Held| moves && !held.closed && !held.still;
+        // What no push can reach is there for others alone.
+        let steps: Vec<Vec<f64>> = moving
+            .contours
+            .iter()
+            .zip(&moving.held)
+            .map(|(contour, held)| {
+                let near = near_sides(contour, |k| is_pushed(of_side(held, k)), 2.0 * radius);
+                near.into_iter().map(|near| if near { step } else { step.max(others) }).collect()
+            })
+            .collect();
+        let mut samples = Samples::with_room(&moving.contours, &steps);
+        let (mut counts, mut held) = (Vec::new(), Vec::with_capacity(samples.points.capacity()));
+        let mut beside = Vec::with_capacity(held.capacity());
+        for ((contour, steps), corners_held) in moving.contours.iter().zip(&steps).zip(&moving.held) {
+            let start = samples.points.len();
+            samples.add(contour, steps, others);
+            let n = samples.points.len() - start;
+            counts.push(n);
+            held.extend(samples.from[start..].iter().map(|&k| of_side(corners_held, k as usize)));
+            let on = if signed_area(contour) < 0.0 { n - 1 } else { 1 };
+            beside.extend((0..n).map(|i| [(i + n - on) % n, (i + on) % n].map(|i| (start + i) as u32)));
+        }
+        let Samples { points: before, seen, from } = samples;
+        let is_pushed: Vec<bool> = held.iter().map(|&held| is_pushed(held)).collect();
         let ties = Ties::new(&before, &is_pushed, radius, step);
         let moved = ties.moved().map(|i| i as u32).collect::<Vec<_>>();
         let pushes = vec![Vec2::ZERO; before.len()];
         let now = before.clone();
-        let every = ((OTHERS * field.sizes.spacing / step) as usize).max(1);
-        let seen = (0..before.len()).filter(|&i| corners[i] || i % every == 0).map(|i| i as u32).collect();
         Skin {
             field: moving.field,
             before,
             now,
             beside,
-            sense,
             seen,
             pushes,
             held,
@@ -249,64 +249,42 @@ impl Skin {
     fn normal(&self, i: usize) -> Vec2 {
         let [a, b] = self.beside[i];
         let along = self.now[b as usize] - self.now[a as usize];
-        let normal = Vec2::new(along.y, -along.x) * self.sense[i];
+        let normal = Vec2::new(along.y, -along.x);
         normal / normal.hypot().max(f64::MIN_POSITIVE)
     }
 
     /// One more iteration, where each sample may move by so much.
-    fn grown(&self, allowed: &Allowances, most: f64, closed: f64) -> Grown {
-        let mut pushes = self.pushes.clone();
+    fn grow(&mut self, allowed: &Allowances, most: f64, closed: f64) {
         for &i in &allowed.free {
             let i = i as usize;
             // No more than any sample near by may move, since those move along.
             let by = self.ties.least(&allowed.to_others, i).min(allowed.to_itself[i]).max(0.0);
             let push = self.pushes[i] + by * self.normal(i);
-            pushes[i] = push * (most / push.hypot().max(most));
+            self.pushes[i] = push * (most / push.hypot().max(most));
         }
-        let place = |&i: &u32| self.before[i as usize] + self.ties.push(&pushes, i as usize);
-        let held = |&i: &u32| {
+        for &i in &allowed.asked {
             let i = i as usize;
-            let still = self.held[i].still || allowed.to_itself[i] <= closed;
-            Held { closed: allowed.to_others[i] <= closed, still }
-        };
-        let now = self.moved.iter().map(place).collect();
-        Grown { now, held: allowed.asked.iter().map(held).collect(), asked: allowed.asked.clone(), pushes }
+            self.held[i].still |= allowed.to_itself[i] <= closed;
+            self.held[i].closed = allowed.to_others[i] <= closed;
+        }
+        for &i in &self.moved {
+            let i = i as usize;
+            self.now[i] = self.before[i] + self.ties.push(&self.pushes, i);
+        }
     }
-
-    /// Moves on.
-    fn take(&mut self, grown: Grown) {
-        self.pushes = grown.pushes;
-        self.moved.iter().zip(grown.now).for_each(|(&i, p)| self.now[i as usize] = p);
-        grown.asked.iter().zip(grown.held).for_each(|(&i, held)| self.held[i as usize] = held);
-    }
-}
-
-/// What an iteration makes of a piece.
-struct Grown {
-    pushes: Vec<Vec2>,
-    /// Where what may move is.
-    now: Vec<Point>,
-    /// Those whose room was asked for, and what holds them.
-    asked: Vec<u32>,
-    held: Vec<Held>,
 }
 
 /// What pieces see of each other.
 struct Others {
     /// Samples with the numbers of their pieces.
-    table: PointTable,
-    /// The same before they are in the table.
-    samples: Vec<(Point, u32)>,
+    table: PointTable<u32>,
     gives_way: Vec<bool>,
 }
 
 impl Others {
     fn see(&mut self, skins: &[Skin]) {
-        self.samples.clear();
-        for (skin, i) in skins.iter().zip(0..) {
-            self.samples.extend(skin.seen.iter().map(|&k| (skin.now[k as usize], i)));
-        }
-        self.table.fill(&self.samples);
+        let all = skins.iter().zip(0..);
+        self.table.fill(all.flat_map(|(skin, i)| skin.seen.iter().map(move |&k| (skin.now[k as usize], i))));
         self.gives_way.clear();
         self.gives_way.extend(skins.iter().map(|skin| skin.gives_way));
     }
@@ -356,18 +334,15 @@ impl<'a> Pieces<'a> {
         let fields = &self.prepared.fields;
         others.see(skins);
         let others = &*others;
-        // Each looks only at the last state, so any number of threads gives the same.
-        let grow = |(own, skin): (usize, &Skin)| {
+        // Each looks only at the last state of others, so any number of threads gives the same.
+        let grow = |(own, skin): (usize, &mut Skin)| {
             let field = &fields[skin.field];
             let spacing = field.sizes.spacing;
             let limit = STEP.0.min(STEP.1 * stage.most) * spacing;
-            let allowed = skin.gives_way.then(|| self.allowances(own, skin, others, limit))?;
-            Some(skin.grown(&allowed, field.params.mould * stage.most * spacing, CLOSED * spacing))
+            let allowed = self.allowances(own, skin, others, limit);
+            skin.grow(&allowed, field.params.mould * stage.most * spacing, CLOSED * spacing);
         };
-        let grown: Vec<_> = skins.par_iter().enumerate().map(grow).collect();
-        for (skin, grown) in skins.iter_mut().zip(grown) {
-            grown.into_iter().for_each(|grown| skin.take(grown));
-        }
+        skins.par_iter_mut().enumerate().filter(|(_, skin)| skin.gives_way).for_each(grow);
     }
 
     /// How far each sample of a piece may move, `limit` at most.
@@ -439,41 +414,88 @@ fn turn(a: Vec2, b: Vec2) -> f64 {
     if a.dot(b) > 0.0 { sine } else { std::f64::consts::PI - sine }
 }
 
-/// Points on a closed contour.
+/// What holds the side of a contour from a corner to the next.
+fn of_side(corners: &[Held], k: usize) -> Held {
+    corners[k].both(corners[(k + 1) % corners.len()])
+}
+
+/// Which sides of a contour lie less than `reach` along it from one that counts, by the number of its first corner.
+fn near_sides(contour: &Contour, counts: impl Fn(usize) -> bool, reach: f64) -> Vec<bool> {
+    let n = contour.len();
+    let mut near: Vec<bool> = (0..n).map(counts).collect();
+    if !near.contains(&true) || !near.contains(&false) {
+        return near;
+    }
+    let counts = near.clone();
+    let mut walk = |sides: &mut dyn Iterator<Item = usize>| {
+        let mut walked = f64::INFINITY;
+        for k in sides {
+            near[k] |= walked < reach;
+            walked = if counts[k] { 0.0 } else { walked + contour[k].distance(contour[(k + 1) % n]) };
+        }
+    };
+    // Twice around, for what begins before the first corner.
+    walk(&mut (0..n).chain(0..n));
+    walk(&mut (0..n).chain(0..n).rev());
+    near
+}
+
+/// Points on closed contours.
 struct Samples {
     points: Vec<Point>,
-    /// Whether each is there for a turn.
-    is_corner: Vec<bool>,
-    /// The corner of the contour at or before each.
+    /// The points that are enough for others.
+    seen: Vec<u32>,
+    /// The corner of its contour at or before each.
     from: Vec<u32>,
 }
 
-/// No farther apart than `step`, and wherever a contour has turned by a third of a right angle since the
-/// last.
-fn sampled(contour: &Contour, step: f64) -> Samples {
-    const TURN: f64 = 0.5;
-    let n = contour.len();
-    let mut samples = Samples { points: Vec::new(), is_corner: Vec::new(), from: Vec::new() };
-    let mut add = |p: Point, is_corner: bool, i: usize| {
-        samples.points.push(p);
-        samples.is_corner.push(is_corner);
-        samples.from.push(i as u32);
-    };
-    let (mut walked, mut turned) = (f64::INFINITY, 0.0);
-    for i in 0..n {
-        let (last, p, next) = (contour[(i + n - 1) % n], contour[i], contour[(i + 1) % n]);
-        let (a, b) = (p - last, next - p);
-        turned += turn(a, b);
-        if turned >= TURN || walked >= step {
-            add(p, turned >= TURN, i);
-            (walked, turned) = (0.0, 0.0);
+impl Samples {
+    /// None yet, and room for what will be added.
+    fn with_room(contours: &[Contour], steps: &[Vec<f64>]) -> Self {
+        let sides = |contour: &Contour, steps: &[f64]| -> f64 {
+            let sides = contour.windows(2).zip(steps);
+            sides.map(|(side, step)| side[0].distance(side[1]) / step).sum()
+        };
+        let count: f64 = contours.iter().zip(steps).map(|(contour, steps)| sides(contour, steps)).sum();
+        // Some more for sharp turns.
+        let room = (1.2 * count).min(1e6) as usize + 16;
+        Samples {
+            points: Vec::with_capacity(room),
+            seen: Vec::with_capacity(room),
+            from: Vec::with_capacity(room),
         }
-        let length = b.hypot();
-        let pieces = (length / step).floor().min(1e4);
-        for k in 1..pieces as usize {
-            add(p.lerp(next, k as f64 / pieces), false, i);
-        }
-        walked = if pieces > 1.0 { length / pieces } else { walked + length };
     }
-    samples
+
+    /// Adds points no farther apart than the steps of their sides, and wherever a contour has turned by a third of
+    /// a right angle since the last. Others see one about every `seen`.
+    fn add(&mut self, contour: &Contour, steps: &[f64], seen: f64) {
+        const TURN: f64 = 0.5;
+        let n = contour.len();
+        let mut unseen = f64::INFINITY;
+        let mut add = |p: Point, is_corner: bool, i: usize| {
+            unseen += steps[i];
+            if is_corner || unseen + steps[i] > seen {
+                self.seen.push(self.points.len() as u32);
+                unseen = 0.0;
+            }
+            self.points.push(p);
+            self.from.push(i as u32);
+        };
+        let (mut walked, mut turned) = (f64::INFINITY, 0.0);
+        for i in 0..n {
+            let (last, p, next) = (contour[(i + n - 1) % n], contour[i], contour[(i + 1) % n]);
+            let (a, b) = (p - last, next - p);
+            turned += turn(a, b);
+            if turned >= TURN || walked >= steps[i] {
+                add(p, turned >= TURN, i);
+                (walked, turned) = (0.0, 0.0);
+            }
+            let length = b.hypot();
+            let pieces = (length / steps[i]).floor().min(1e4);
+            for k in 1..pieces as usize {
+                add(p.lerp(next, k as f64 / pieces), false, i);
+            }
+            walked = if pieces > 1.0 { length / pieces } else { walked + length };
+        }
+    }
 }

@@ -59,8 +59,8 @@ fn of_field(field: &Field, placement: &Placement) -> Vec<Vec<Contour>> {
     let sizes = &field.sizes;
     let reach = sizes.safe(sizes.filler_gap) + placement.widest_stroke();
     let bounds = field.region.bounds().inflate(reach, reach);
-    let mut near = placement.silhouettes();
-    near.retain(|contour| touches(contour, bounds));
+    let near = placement.silhouettes().into_iter().filter(|contour| touches(contour, bounds));
+    let near: Vec<Contour> = near.cloned().collect();
     let free = difference(field.region.contours(), &offset(&near, reach));
     let round = ROUND * sizes.spacing;
     let contours = offset(&offset(&free, -round), round);

@@ -19,7 +19,7 @@ use crate::geom::flatten::flatten;
 use crate::geom::near::{SegmentGrid, crosses, segment_segment};
 use crate::geom::polyline;
 use crate::geom::region::Region;
-use kurbo::{Affine, BezPath, Point};
+use kurbo::{Affine, BezPath, Point, Rect};
 use rayon::prelude::*;
 
 /// Widths, and shares of the length given up at both ends, tried one after the other until
@@ -202,8 +202,8 @@ impl Placement {
     }
 
     /// Outer contours of all elements, without holes.
-    pub fn silhouettes(&self) -> Vec<Contour> {
-        self.placed.iter().flat_map(|placed| placed.silhouette.iter().cloned()).collect()
+    pub fn silhouettes(&self) -> Vec<&Contour> {
+        self.placed.iter().flat_map(|placed| &placed.silhouette).collect()
     }
 
     /// Half stroke widths, of elements and then of fillers.
@@ -211,8 +211,16 @@ impl Placement {
         &self.strokes
     }
 
+    /// An empty grid for the outlines of everything that moves; without them, all is as if nothing were placed.
+    pub fn take_outlines(&mut self) -> SegmentGrid {
+        let nothing = SegmentGrid::new(Rect::ZERO, 1.0);
+        let mut outlines = std::mem::replace(&mut self.outlines, nothing);
+        outlines.clear();
+        outlines
+    }
+
     /// Takes moved outlines for those of before.
-    pub fn replace_outlines(&mut self, outlines: SegmentGrid) {
+    pub fn give_outlines(&mut self, outlines: SegmentGrid) {
         self.outlines = outlines;
     }
 

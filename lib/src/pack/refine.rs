@@ -169,7 +169,7 @@ fn shape(spine: Spine, fit: &Fit, template: &Template) -> Shape {
 
 /// Envelopes of all bodies, to ask how far the next one is.
 struct Neighbourhood {
-    outlines: PointTable,
+    outlines: PointTable<u32>,
     areas: Vec<f64>,
     reach: f64,
 }
@@ -178,12 +178,11 @@ impl Neighbourhood {
     fn new(bodies: &[Body], prepared: &Prepared) -> Self {
         let largest = |f: fn(&Field) -> f64| prepared.fields.iter().map(f).fold(0.0, f64::max);
         let reach = largest(|field| field.sizes.gap) + 0.5 * largest(|field| field.sizes.spacing);
-        let samples = |(i, body): (usize, &Body)| {
+        let samples = bodies.iter().zip(0..).flat_map(|(body, i)| {
             let outline = body.shape.sides.iter().flatten().chain(&body.shape.tips);
-            outline.map(|&p| (p, i as u32)).collect::<Vec<_>>()
-        };
-        let samples: Vec<(Point, u32)> = bodies.iter().enumerate().flat_map(samples).collect();
-        let outlines = PointTable::new(prepared.bounds, reach / 3.0, &samples);
+            outline.map(move |&p| (p, i))
+        });
+        let outlines = PointTable::new(prepared.bounds, reach / 3.0, samples);
         Neighbourhood { outlines, areas: bodies.iter().map(|body| body.fit.area).collect(), reach }
     }
 

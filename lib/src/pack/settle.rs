@@ -40,8 +40,8 @@ pub(super) fn settle(
     if all.iter().all(|moving| moving.warps.is_empty()) {
         return;
     }
+    let mut outlines = placement.take_outlines();
     let elements = placement.placed.len();
-    let spacing = prepared.fields.iter().map(|field| field.sizes.spacing).fold(f64::INFINITY, f64::min);
     let moulded = |i: usize, share: f64| {
         let sizes = &prepared.fields[all[i].field].sizes;
         let warps = all[i].warps.iter().map(|warp| warp.scaled(share));
@@ -64,7 +64,9 @@ pub(super) fn settle(
         all.iter().map(|moving| if moving.warps.is_empty() { SHARES.len() } else { 0 }).collect();
     let mut settled: Vec<Option<Moulded>> = all.iter().map(|_| None).collect();
     let mut changed: Vec<usize> = (0..all.len()).filter(|&i| level[i] < SHARES.len()).collect();
-    let mut outlines;
+    for i in (0..all.len()).filter(|&i| level[i] == SHARES.len()) {
+        before(i).iter().for_each(|contour| outlines.insert_contour(contour, i as u32));
+    }
     loop {
         let again: Vec<(usize, Option<Moulded>)> = changed
             .par_iter()
@@ -74,12 +76,11 @@ pub(super) fn settle(
                 first.next().map_or((SHARES.len(), None), |(k, moulded)| (k, Some(moulded)))
             })
             .collect();
-        for (&i, again) in changed.iter().zip(again) {
-            (level[i], settled[i]) = again;
-        }
-        outlines = SegmentGrid::new(prepared.bounds, spacing / 6.0);
-        for (i, moulded) in settled.iter().enumerate() {
-            let contours = moulded.as_ref().map_or(before(i), |moulded| &moulded.outlines);
+        for (&i, (reached, moulded)) in changed.iter().zip(again) {
+            let last = settled[i].take().into_iter().flat_map(|last| last.outlines);
+            last.for_each(|contour| outlines.remove_contour(&contour, i as u32));
+            (level[i], settled[i]) = (reached, moulded);
+            let contours = settled[i].as_ref().map_or(before(i), |moulded| &moulded.outlines);
             contours.iter().for_each(|contour| outlines.insert_contour(contour, i as u32));
         }
         let blamed = |&i: &usize| {
@@ -96,20 +97,19 @@ pub(super) fn settle(
         lowered.iter().for_each(|&i| level[i] += 1);
         changed = lowered;
     }
-    for (i, moulded) in settled.into_iter().enumerate() {
+    let of_fillers = settled.split_off(elements);
+    placement.placed.par_iter_mut().zip(settled).for_each(|(placed, moulded)| {
+        let Some(Moulded { warps, outer, outlines }) = moulded else { return };
+        placed.silhouette = silhouette(&outlines);
+        placed.area = area(&placed.silhouette);
+        (placed.bend.warps, placed.outer, placed.outlines) = (warps, outer, outlines);
+    });
+    for (filler, moulded) in fillers.iter_mut().zip(of_fillers) {
         let Some(Moulded { warps, outer, outlines }) = moulded else { continue };
-        if i < elements {
-            let placed = &mut placement.placed[i];
-            placed.silhouette = silhouette(&outlines);
-            placed.area = area(&placed.silhouette);
-            (placed.bend.warps, placed.outer, placed.outlines) = (warps, outer, outlines);
-        } else {
-            let filler = &mut fillers[i - elements];
-            filler.area = area(&outlines);
-            (filler.warps, filler.moulded, filler.outlines) = (warps, outer.into_iter().next(), outlines);
-        }
+        filler.area = area(&outlines);
+        (filler.warps, filler.moulded, filler.outlines) = (warps, outer.into_iter().next(), outlines);
     }
-    placement.replace_outlines(outlines);
+    placement.give_outlines(outlines);
 }
 
 /// Chords of moulded outlines are this much nearer to the truth, and the gaps that are checked this many
