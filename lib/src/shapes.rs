@@ -69,6 +69,11 @@ impl Shapes {
         rinceau_format::decimals_for(self.size)
     }
 
+    /// What is fixed, as simple contours.
+    pub fn fixed(&self) -> &[Contour] {
+        &self.fixed
+    }
+
     /// Area of all containers without what is fixed.
     pub fn area(&self) -> f64 {
         self.areas.iter().sum()

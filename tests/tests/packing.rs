@@ -3,7 +3,7 @@
 
 mod support;
 
-use rinceau::geom::boolean::{area, difference, offset, signed_area, simplified, union};
+use rinceau::geom::boolean::{area, difference, intersection, offset, signed_area, simplified, union};
 use rinceau::geom::region::Region;
 use rinceau_format::{Artwork, Part, Scene};
 use support::geometry::*;
@@ -179,6 +179,39 @@ fn one_connected_piece_is_nowhere_thinner_than_a_bridge() {
     let refused =
         pack(&heart(), &[("connect", "true".to_owned()), ("bridge", "90".to_owned())], 1).unwrap_err();
     assert_eq!(refused.code(), "bridge-too-wide");
+}
+
+#[test]
+fn bridges_go_around_what_is_fixed_if_they_can() {
+    let in_heart = |fixed: &str| {
+        let scene = scene(&format!("<path class='rinceau-container' d='{HEART}'/>{fixed}"));
+        let artwork =
+            packed(&scene, &[("spacing", "40"), ("connect", "true"), ("bridge", "4"), ("fillers", "none")]);
+        let piece = simplified(&pieces(&artwork, "piece")[0], false);
+        assert_eq!(
+            piece.iter().filter(|contour| signed_area(contour) > 0.0).count(),
+            1,
+            "{fixed}: one piece"
+        );
+        let parts = scene.fixed.iter().flat_map(|fixed| &fixed.parts);
+        let fixed: Vec<Vec<kurbo::Point>> = parts.flat_map(|part| contours(&part.path)).collect();
+        (area(&intersection(&piece, &simplified(&fixed, false))), artwork.warnings.join("; "))
+    };
+    // The shortest bridge would cross the first two.
+    for [x, y, width, height] in
+        [[242, 74, 140, 1], [224, 68, 140, 1], [120, 160, 280, 8], [200, 100, 8, 240]]
+    {
+        let (common, warnings) = in_heart(&format!(
+            "<rect class='rinceau-fixed' x='{x}' y='{y}' width='{width}' height='{height}'/>"
+        ));
+        assert!(common < 1e-6 && warnings.is_empty(), "{x},{y}: {common} {warnings}");
+    }
+    let (common, warnings) = in_heart("<rect class='rinceau-fixed' x='0' y='195' width='400' height='12'/>");
+    assert!(common > 12.0 && common < 60.0, "one bridge: {common}");
+    assert_eq!(
+        warnings,
+        "1 bridge crosses what is fixed, since nothing else joins the piece on both sides of it"
+    );
 }
 
 #[test]

@@ -5,10 +5,12 @@
 //! without what is thinner. Cores are joined by lines, the edges of a shortest tree (Kruskal), in containers
 //! as from one to the next. The one piece is what discs cover whose middles run through all cores and along all
 //! lines, so the width holds everywhere, also where two parts of a piece had hung by a thinner neck.
+//! Bridges go around what is fixed, unless nothing else joins what lies on both sides of it.
 
 use crate::geom::boolean::{Contour, is_outer, offset, parts, signed_area, simplified, stroked};
-use crate::geom::near::foot;
+use crate::geom::near::{foot, segment_segment};
 use crate::geom::polyline::{self, simplified_closed};
+use crate::geom::region::Region;
 use crate::geom::triangulate::delaunay;
 use crate::ink::area_of;
 use kurbo::{Affine, BezPath, Point};
@@ -19,13 +21,14 @@ use rinceau_format::{Artwork, Error, Group, Item, Part, Style};
 const JOINED: [&str; 3] = ["elements", "fillers", "negative"];
 
 /// Joins all that an artwork draws to one piece, in a sublayer of its own in their place. `width` is that of
-/// bridges, `tone` the colour of the piece. False, and nothing changed, if the time ran out first.
+/// bridges, `fixed` what they keep clear of, `tone` the colour of the piece. False, and nothing changed, if the
+/// time ran out first.
 ///
 /// Errors: nothing is as thick as a bridge.
 pub(super) fn join(
     artwork: &mut Artwork,
-    width: f64,
-    tolerance: f64,
+    fixed: &[Contour],
+    (width, tolerance): (f64, f64),
     tone: &str,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
@@ -58,7 +61,19 @@ pub(super) fn join(
         return Err(Error::new("bridge-too-wide", "No element is as thick as a bridge", remedy));
     }
     // Finer than the outlines themselves, samples would tell nothing.
-    let bridges = bridges(&cores, (0.5 * width).max(4.0 * tolerance));
+    let fixed = Region::new(fixed.to_vec());
+    let crosses = |[p, q]: [Point; 2]| {
+        let too_near = |a, b| segment_segment(p, q, a, b) < radius;
+        fixed.as_ref().is_some_and(|fixed| {
+            let mut is_clear = !fixed.contains(p);
+            fixed.edges().visit(p, q, radius, |a, b, _| {
+                is_clear &= !too_near(a, b);
+                is_clear
+            });
+            !is_clear
+        })
+    };
+    let (bridges, crossing) = bridges(&cores, (0.5 * width).max(4.0 * tolerance), crosses);
     let path = united(&cores, &bridges, radius, tolerance);
     let part = Part { path, transform: Affine::IDENTITY, style: Style::filled(tone) };
     artwork.groups.retain(|group| !is_joined(&group));
@@ -70,6 +85,12 @@ pub(super) fn join(
         artwork
             .warnings
             .push(format!("{too_thin} shapes are thinner than a bridge and were left out of the piece"));
+    }
+    if crossing > 0 {
+        let cross = if crossing == 1 { "bridge crosses" } else { "bridges cross" };
+        artwork.warnings.push(format!(
+            "{crossing} {cross} what is fixed, since nothing else joins the piece on both sides of it"
+        ));
     }
     Ok(true)
 }
@@ -99,9 +120,13 @@ fn light(contours: Vec<Contour>, tolerance: f64) -> Vec<Contour> {
     lighter.filter(|contour| contour.len() > 2).collect()
 }
 
-/// The shortest bridges that join all cores: a shortest tree is among the edges of a
-/// Delaunay triangulation of their samples.
-fn bridges(cores: &[Vec<Contour>], step: f64) -> Vec<[Point; 2]> {
+/// The shortest bridges that join all cores, of which those that cross what they should not come last, and how
+/// many these are: a shortest tree is among the edges of a Delaunay triangulation of their samples.
+fn bridges(
+    cores: &[Vec<Contour>],
+    step: f64,
+    crosses: impl Fn([Point; 2]) -> bool,
+) -> (Vec<[Point; 2]>, usize) {
     let (mut samples, mut of) = (Vec::new(), Vec::new());
     for (node, contours) in cores.iter().enumerate() {
         for contour in contours {
@@ -119,8 +144,21 @@ fn bridges(cores: &[Vec<Contour>], step: f64) -> Vec<[Point; 2]> {
         .collect();
     edges.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
     let mut sets = Sets((0..cores.len()).collect());
-    let shortest = edges.into_iter().filter(|&(_, a, b)| sets.join(of[a], of[b]));
-    shortest.map(|(_, a, b)| nearest(&cores[of[a]], &cores[of[b]], samples[b])).collect()
+    let mut bridges = Vec::new();
+    for &(_, a, b) in &edges {
+        let plain = [samples[a], samples[b]];
+        if sets.find(of[a]) == sets.find(of[b]) || crosses(plain) {
+            continue;
+        }
+        let shortest = nearest(&cores[of[a]], &cores[of[b]], samples[b]);
+        bridges.push(if crosses(shortest) { plain } else { shortest });
+        sets.join(of[a], of[b]);
+    }
+    let clear = bridges.len();
+    let across = edges.iter().filter(|&&(_, a, b)| sets.join(of[a], of[b]));
+    bridges.extend(across.map(|&(_, a, b)| nearest(&cores[of[a]], &cores[of[b]], samples[b])));
+    let crossing = bridges.len() - clear;
+    (bridges, crossing)
 }
 
 /// The nearest places of two cores, from a place on the second that is nearly one of them.

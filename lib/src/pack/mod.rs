@@ -118,8 +118,8 @@ pub fn generate(
     if let Some(first) = prepared.fields.first().filter(|field| field.params.connect) {
         let tone = palette(&first.params.palette, scene.containers[first.container].fill.as_deref())[0];
         let step = |done| progress.step("connect", done);
-        let (bridge, tolerance) = (first.sizes.bridge, first.sizes.tolerance());
-        artwork.complete &= connect::join(&mut artwork, bridge, tolerance, tone, step)?;
+        let sizes = (first.sizes.bridge, first.sizes.tolerance());
+        artwork.complete &= connect::join(&mut artwork, &prepared.fixed, sizes, tone, step)?;
     }
     if prepared.fields.iter().any(|field| field.params.show_gaps) {
         artwork.groups.extend(map::map(scene, &artwork)?);

@@ -37,6 +37,8 @@ pub(super) struct Prepared {
     pub bounds: Rect,
     /// Area of all containers without fixed elements.
     pub area: f64,
+    /// What fixed elements cover.
+    pub fixed: Vec<Contour>,
     pub warnings: Vec<String>,
 }
 
@@ -56,6 +58,7 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
         input_size: shapes.size,
         bounds: shapes.bounds,
         area: shapes.area(),
+        fixed: shapes.fixed().to_vec(),
         warnings: Vec::new(),
     };
     for (index, (container, shape)) in scene.containers.iter().zip(&shapes.containers).enumerate() {
