@@ -156,6 +156,29 @@ fn worn_and_rounded_elements_stay_within_themselves() {
 }
 
 #[test]
+fn what_is_not_finished_when_the_time_is_out_stays_whole() {
+    struct Half;
+    impl rinceau::Progress for Half {
+        fn step(&mut self, stage: &'static str, done: f64) -> bool {
+            stage != "artwork" || done < 0.5
+        }
+    }
+    let run = |params: &[(&str, &str)], progress: &mut dyn rinceau::Progress| {
+        let params: Vec<_> = params.iter().map(|&(name, value)| (name, value.to_owned())).collect();
+        let pack = generator("pack");
+        rinceau::generate(pack, &values(pack, &params), &heart(), 5, progress).unwrap()
+    };
+    let worn = [("spacing", "20"), ("distress", "0.5"), ("fillers", "none")];
+    let half = run(&worn, &mut Half);
+    let of = |params| pieces(&run(params, &mut rinceau::Deadline::new(None)), "elements");
+    let (worn, whole, half_worn) = (of(&worn), of(&[worn[0], worn[2]]), pieces(&half, "elements"));
+    let like =
+        |others: &[Vec<Vec<kurbo::Point>>]| half_worn.iter().zip(others).filter(|(a, b)| a == b).count();
+    assert!(!half.complete && half_worn.len() == whole.len());
+    assert!(like(&worn) > 15 && like(&whole) > 15, "{} {} of {}", like(&worn), like(&whole), whole.len());
+}
+
+#[test]
 fn one_connected_piece_is_nowhere_thinner_than_a_bridge() {
     let two = scene(
         "<circle class='rinceau-container' cx='110' cy='200' r='90'/><circle class='rinceau-container' cx='310' cy='200' r='80'/>",

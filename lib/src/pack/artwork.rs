@@ -81,54 +81,56 @@ impl Made<'_> {
     }
 }
 
-/// The result: elements, fillers, copies of fixed elements, and the final spines, hidden.
-pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
+/// The result: elements, fillers, copies of fixed elements, and the final spines, hidden. Incomplete if the time
+/// ran out before all were finished.
+pub(super) fn artwork(made: &Made, scene: &Scene, mut go_on: impl FnMut(f64) -> bool) -> Artwork {
     let prepared = made.prepared;
     let decimals = rinceau_format::decimals_for(prepared.input_size);
     let spacing = prepared.fields.iter().map(|field| field.sizes.spacing).fold(0.0, f64::max);
     let tones = paint::assign(made.placed, 2.6 * spacing);
-    let mut elements = Group { name: "elements".into(), ..Group::default() };
-    let mut spines = Group { name: "spines".into(), hidden: true, ..Group::default() };
+    let mirror = |field: usize| prepared.fields[field].mirror;
     // Bent finely only now, when it is known what stays, and on all cores.
-    let drawn = |(index, (placed, tone)): (usize, (&Placed, usize))| -> Vec<Part> {
+    let drawn = |(index, (placed, tone)): (usize, (&Placed, usize))| {
         let field = &prepared.fields[placed.field];
         let template = &made.templates[placed.template];
         let palette = made.palette(placed.field, scene);
         // The accent is for the shapes of the gaps, where there are some.
         let tone = if field.params.has_shapes() && tone == 2 { index % 2 } else { tone };
         let paths = placed.paths(template, &field.sizes);
-        let finish = made.finish(placed.field);
         let part = |((_, style), path): (&(BezPath, Style), BezPath)| {
             let style = if template.builtin {
                 painted(style, palette[tone])
             } else {
                 style.scaled(placed.scale, decimals)
             };
-            finish.part(Part { path, transform: Affine::IDENTITY, style })
+            Part { path, transform: Affine::IDENTITY, style }
         };
-        template.parts.iter().zip(paths).filter_map(part).collect()
+        let parts = template.parts.iter().zip(paths).map(part).collect();
+        (placed.field, Item::new(template.id.clone(), parts))
     };
-    let parts: Vec<Vec<Part>> = made.placed.par_iter().zip(tones).enumerate().map(drawn).collect();
-    for (placed, parts) in made.placed.iter().zip(parts) {
-        let mirror = prepared.fields[placed.field].mirror;
-        push(&mut elements, Item::new(made.templates[placed.template].id.clone(), parts), mirror);
-        push(&mut spines, spine_item(&placed.spine), mirror);
-    }
-    let mut fillers = Group { name: "fillers".into(), ..Group::default() };
-    let item = |filler: &Filler| filler_item(filler, made, scene, decimals);
-    let items: Vec<Item> = made.fillers.par_iter().map(item).collect();
-    for (filler, item) in made.fillers.iter().zip(items) {
-        push(&mut fillers, item, prepared.fields[filler.field].mirror);
-    }
-    let mut negative = Group { name: "negative".into(), ..Group::default() };
-    let item = |shape: &Shape| {
+    let filler = |filler: &Filler| (filler.field, filler_item(filler, made, scene, decimals));
+    let shape = |shape: &Shape| {
         let style = Style::filled(made.palette(shape.field, scene)[2]);
         let part = Part { path: shape.path(), transform: Affine::IDENTITY, style };
-        Item::new("gap", made.finish(shape.field).part(part).into_iter().collect())
+        (shape.field, Item::new("gap", vec![part]))
     };
-    let items: Vec<Item> = made.negative.par_iter().map(item).collect();
-    for (shape, item) in made.negative.iter().zip(items) {
-        push(&mut negative, item, prepared.fields[shape.field].mirror);
+    let elements = made.placed.par_iter().zip(tones).enumerate().map(drawn);
+    let fillers = made.fillers.par_iter().map(filler);
+    let mut items: Vec<(usize, Item)> =
+        elements.chain(fillers).chain(made.negative.par_iter().map(shape)).collect();
+    let complete = finished(&mut items, made, &mut go_on);
+    let mut items = items.into_iter();
+    let mut group = |name: &str, count: usize| {
+        let mut group = Group { name: name.into(), ..Group::default() };
+        items.by_ref().take(count).for_each(|(field, item)| push(&mut group, item, mirror(field)));
+        group
+    };
+    let elements = group("elements", made.placed.len());
+    let fillers = group("fillers", made.fillers.len());
+    let negative = group("negative", made.negative.len());
+    let mut spines = Group { name: "spines".into(), hidden: true, ..Group::default() };
+    for placed in made.placed {
+        push(&mut spines, spine_item(&placed.spine), mirror(placed.field));
     }
     let fixed = Group {
         name: "fixed".into(),
@@ -148,6 +150,27 @@ pub(super) fn artwork(made: &Made, scene: &Scene, complete: bool) -> Artwork {
     Artwork { groups, complete, warnings, counts: made.counts(), decimals, ..Artwork::default() }
 }
 
+/// Finishes items of containers. False if the time ran out first: the rest stay as they are.
+fn finished(items: &mut [(usize, Item)], made: &Made, go_on: &mut dyn FnMut(f64) -> bool) -> bool {
+    /// Between two looks at the clock.
+    const AT_ONCE: usize = 32;
+    let finishes: Vec<Finish> = (0..made.prepared.fields.len()).map(|field| made.finish(field)).collect();
+    if finishes.iter().all(Finish::is_plain) {
+        return true;
+    }
+    let all = items.len().div_ceil(AT_ONCE) as f64;
+    for (index, items) in items.chunks_mut(AT_ONCE).enumerate() {
+        if !go_on(index as f64 / all) {
+            return false;
+        }
+        items.par_iter_mut().for_each(|(field, item)| {
+            let parts = std::mem::take(&mut item.parts).into_iter();
+            item.parts = parts.filter_map(|part| finishes[*field].part(part)).collect();
+        });
+    }
+    true
+}
+
 /// A filler, in the accent if it is built in, so that the smallest shapes are seen as one family.
 fn filler_item(filler: &Filler, made: &Made, scene: &Scene, decimals: usize) -> Item {
     let tone = made.palette(filler.field, scene)[2];
@@ -165,8 +188,6 @@ fn filler_item(filler: &Filler, made: &Made, scene: &Scene, decimals: usize) -> 
         }
         _ => vec![Part { path: filler.path(), transform: Affine::IDENTITY, style: Style::filled(tone) }],
     };
-    let finish = made.finish(filler.field);
-    let parts = parts.into_iter().filter_map(|part| finish.part(part)).collect();
     Item::new(filler.motif.name(made.templates).to_owned(), parts)
 }
 

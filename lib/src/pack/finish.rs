@@ -29,9 +29,14 @@ const CELL: f64 = 0.045;
 const CRUMB: f64 = 2e-3;
 
 impl Finish {
+    /// True if it leaves everything as it is.
+    pub fn is_plain(&self) -> bool {
+        self.rounding <= 0.0 && self.distress <= 0.0
+    }
+
     /// A filled part, finished. `None` if nothing is left of it. Parts without a fill stay as they are.
     pub fn part(&self, part: Part) -> Option<Part> {
-        if self.rounding <= 0.0 && self.distress <= 0.0 || !part.style.is_filled() {
+        if self.is_plain() || !part.style.is_filled() {
             return Some(part);
         }
         let flat = flatten(&(part.transform * part.path.clone()), 0.5 * self.tolerance);

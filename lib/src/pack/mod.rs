@@ -112,8 +112,9 @@ pub fn generate(
             seed: rng.bits(),
         },
         scene,
-        complete,
+        |done| progress.step("artwork", done),
     );
+    artwork.complete &= complete;
     // By the first container, since it is one piece for all of them.
     if let Some(first) = prepared.fields.first().filter(|field| field.params.connect) {
         let tone = palette(&first.params.palette, scene.containers[first.container].fill.as_deref())[0];
