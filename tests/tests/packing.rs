@@ -341,6 +341,25 @@ fn awkward_guides_are_followed_as_well_as_can_be() {
     }
 }
 
+#[test]
+fn of_fixed_spines_that_cross_the_first_carries_an_element() {
+    let spines = ["M60,200C150,160 250,240 340,200", "M200,60C160,150 240,250 200,340", "M100,300H300"];
+    let spines: String =
+        spines.map(|d| format!("<path class='rinceau-fixed-spine' fill='none' d='{d}'/>")).concat();
+    let scene = scene(&format!("<circle class='rinceau-container' cx='200' cy='200' r='190'/>{spines}"));
+    let artwork = packed(&scene, &[]);
+    assert_eq!(
+        artwork.warnings,
+        ["1 of 3 fixed spines carry no element: they cross others that lie below them"]
+    );
+    // A line of elements along the first.
+    let along = |item: &rinceau_format::Item| {
+        let at = bounds(&contours(&item.parts[0].path));
+        at.x0 < 110.0 && at.x1 > 290.0 && at.height() < 110.0 && (at.center().y - 200.0).abs() < 20.0
+    };
+    assert!(artwork.group("spines").unwrap().items.iter().any(along));
+}
+
 /// A spine that turns back, and one that winds up, carry an element without a fold.
 #[test]
 fn tight_turns_do_not_fold() {

@@ -4,6 +4,7 @@
 use super::params::{Params, Sizes};
 use crate::geom::boolean::{Contour, intersection};
 use crate::geom::mirror::Axis;
+use crate::geom::near::{SegmentGrid, crosses};
 use crate::geom::polyline;
 use crate::geom::region::Region;
 use crate::shapes::{Lines, Shapes, closed, passes, polylines};
@@ -50,7 +51,7 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
     let shapes = Shapes::new(scene, &[])?;
     let tolerance = shapes.tolerance;
     let guides = polylines(&scene.guides, tolerance);
-    let spines = polylines(&scene.fixed_spines, tolerance);
+    let (spines, crossing) = apart(polylines(&scene.fixed_spines, tolerance), shapes.bounds);
     check_guides(&scene.guides, &guides, &shapes.containers)?;
 
     let mut prepared = Prepared {
@@ -59,7 +60,7 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
         bounds: shapes.bounds,
         area: shapes.area(),
         fixed: shapes.fixed().to_vec(),
-        warnings: Vec::new(),
+        warnings: crossing.into_iter().collect(),
     };
     for (index, (container, shape)) in scene.containers.iter().zip(&shapes.containers).enumerate() {
         let overrides = container.overrides.iter().map(|(name, value)| (name.as_str(), value.as_str()));
@@ -92,6 +93,32 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
         }
     }
     Ok(prepared)
+}
+
+/// Lines without those that cross an earlier one, since two elements cannot lie in one place, and what to say
+/// of these.
+fn apart(lines: Lines, bounds: Rect) -> (Lines, Option<String>) {
+    let all = lines.len();
+    let mut taken = SegmentGrid::new(bounds, bounds.size().max_side() / 100.0);
+    let mut kept = Lines::new();
+    for (owner, line) in lines {
+        let is_free = |side: &[Point]| {
+            let mut is_free = true;
+            taken.visit(side[0], side[1], 0.0, |p, q, _| {
+                is_free = !crosses(side[0], side[1], p, q);
+                is_free
+            });
+            is_free
+        };
+        if line.windows(2).all(is_free) {
+            line.windows(2).for_each(|side| taken.insert(side[0], side[1], owner as u32));
+            kept.push((owner, line));
+        }
+    }
+    let crossing = all - kept.len();
+    let told =
+        format!("{crossing} of {all} fixed spines carry no element: they cross others that lie below them");
+    (kept, (crossing > 0).then_some(told))
 }
 
 /// A region with the guides and fixed spines that pass through it.
