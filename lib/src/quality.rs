@@ -7,7 +7,7 @@
 
 use crate::geom::boolean::{Contour, area, is_outer, signed_area, simplified};
 use crate::geom::distance::{cover, nearest_marked, runs, squared_distances};
-use crate::geom::near::SegmentGrid;
+use crate::geom::segment::SegmentGrid;
 use crate::ink::area_of;
 use crate::shapes::Shapes;
 use kurbo::{Point, Rect, Vec2};

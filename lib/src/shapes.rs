@@ -4,8 +4,8 @@
 use crate::geom::boolean::{self, Contour};
 use crate::geom::crossing::self_crossings;
 use crate::geom::flatten::{Subpath, flatten};
-use crate::geom::near::crosses;
 use crate::geom::region::Region;
+use crate::geom::segment::crosses;
 use kurbo::{BezPath, Point, Rect, Shape};
 use rinceau_format::{Container, Error, FillRule, Fixed, Guide, Scene};
 

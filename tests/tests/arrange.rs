@@ -192,7 +192,7 @@ fn boundaries_keep_whole_elements_off() {
             piece[0].windows(2).any(|pair| {
                 line[0]
                     .windows(2)
-                    .any(|wall| rinceau::geom::near::crosses(pair[0], pair[1], wall[0], wall[1]))
+                    .any(|wall| rinceau::geom::segment::crosses(pair[0], pair[1], wall[0], wall[1]))
             })
         };
         let elements = pieces(&artwork, "elements");

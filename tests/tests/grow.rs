@@ -5,8 +5,8 @@ mod support;
 
 use kurbo::{Affine, BezPath, ParamCurve, Point, Shape};
 use proptest::prelude::*;
-use rinceau::geom::near::{crosses, point_segment};
 use rinceau::geom::region::Region;
+use rinceau::geom::segment::{crosses, point_segment};
 use rinceau::grow::{Design, Params};
 use rinceau::{Deadline, Rng, quality};
 use rinceau_format::{Artwork, Error, RuleSet, Scene};

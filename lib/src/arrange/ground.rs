@@ -2,9 +2,9 @@
 //! which way the flow runs there (checklist E-022, E-050, E-051).
 
 use crate::field::direction::DirectionField;
-use crate::geom::near::{SegmentGrid, crosses};
 use crate::geom::polyline::tangents;
 use crate::geom::region::Region;
+use crate::geom::segment::{SegmentGrid, crosses};
 use kurbo::{Point, Rect, Vec2};
 
 /// A region with its flow and boundaries.

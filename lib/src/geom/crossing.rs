@@ -2,7 +2,7 @@
 
 use crate::geom::boolean::Contour;
 use crate::geom::flatten::flatten;
-use crate::geom::near::{SegmentGrid, crosses};
+use crate::geom::segment::{SegmentGrid, crosses};
 use kurbo::{BezPath, Point, Rect};
 
 /// Places where a closed contour properly crosses itself, `most` of them at most.

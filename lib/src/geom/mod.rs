@@ -11,6 +11,7 @@ pub mod mirror;
 pub mod near;
 pub mod polyline;
 pub mod region;
+pub mod segment;
 pub mod spline;
 pub mod triangulate;
 pub mod warp;

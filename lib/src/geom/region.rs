@@ -1,8 +1,8 @@
 //! A region to fill: simple contours with fast questions about inside and distance.
 
 use crate::geom::boolean::{self, Contour};
-use crate::geom::near::SegmentGrid;
 use crate::geom::polyline;
+use crate::geom::segment::SegmentGrid;
 use kurbo::{Point, Rect, Vec2};
 
 /// An area bounded by simple contours: outer ones and holes.

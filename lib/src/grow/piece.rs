@@ -2,7 +2,7 @@
 //! what touches what (000 3.2, 4.2; checklist W-063, W-068, W-069).
 
 use crate::geom::flatten::flatten;
-use crate::geom::near::{crosses, point_segment, segment_segment};
+use crate::geom::segment::{crosses, point_segment, segment_segment};
 use kurbo::{Affine, Arc, BezPath, CubicBez, ParamCurve, Point, Rect, Shape, Vec2};
 
 /// Points of a polygon at most.

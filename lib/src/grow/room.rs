@@ -3,8 +3,8 @@
 use super::piece::Piece;
 use super::space::{Circle, Space};
 use crate::geom::distance::covered;
-use crate::geom::near::point_segment;
 use crate::geom::region::Region;
+use crate::geom::segment::point_segment;
 use kurbo::{Affine, Point, Rect, Vec2};
 
 /// Room at two scales: all of it in coarse cells, and what is near to something in fine ones. The first

@@ -8,9 +8,9 @@
 //! Bridges go around what is fixed, unless nothing else joins what lies on both sides of it.
 
 use crate::geom::boolean::{Contour, is_outer, offset, parts, signed_area, simplified, stroked};
-use crate::geom::near::{foot, segment_segment};
 use crate::geom::polyline::{self, simplified_closed};
 use crate::geom::region::Region;
+use crate::geom::segment::{foot, segment_segment};
 use crate::geom::triangulate::delaunay;
 use crate::ink::area_of;
 use kurbo::{Affine, BezPath, Point};

@@ -3,9 +3,10 @@
 use super::prepare::Field;
 use crate::geom::boolean::{Contour, touches};
 use crate::geom::distance::{Distances, Line, cover, covered, passed};
-use crate::geom::near::{PointGrid, SegmentGrid, foot, point_segment};
+use crate::geom::near::PointGrid;
 use crate::geom::polyline;
 use crate::geom::region::Region;
+use crate::geom::segment::{SegmentGrid, foot, point_segment};
 use crate::shapes::closed;
 use kurbo::{Point, Vec2};
 use rayon::prelude::*;

@@ -15,8 +15,8 @@ use super::refine::Body;
 use super::template::{BINS, Template};
 use crate::field::{DirectionField, LineKind};
 use crate::geom::boolean::Contour;
-use crate::geom::near::SegmentGrid;
 use crate::geom::polyline::{self, left_of};
+use crate::geom::segment::SegmentGrid;
 use crate::rng::Rng;
 use kurbo::{Point, Vec2};
 

@@ -43,6 +43,7 @@ mod prepare;
 mod refine;
 mod settle;
 mod shift;
+mod skin;
 mod template;
 mod thread;
 

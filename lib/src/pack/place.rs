@@ -16,9 +16,9 @@ use crate::geom::bend::Bend;
 use crate::geom::boolean::{Contour, area, encloses, is_outer, simplified};
 use crate::geom::crossing::{any_crossing, self_crossings};
 use crate::geom::flatten::flatten;
-use crate::geom::near::{SegmentGrid, crosses, segment_segment};
 use crate::geom::polyline;
 use crate::geom::region::Region;
+use crate::geom::segment::{SegmentGrid, crosses, segment_segment};
 use kurbo::{Affine, BezPath, Point, Rect};
 use rayon::prelude::*;
 

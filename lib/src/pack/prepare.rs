@@ -4,9 +4,9 @@
 use super::params::{Params, Sizes};
 use crate::geom::boolean::{Contour, intersection};
 use crate::geom::mirror::Axis;
-use crate::geom::near::{SegmentGrid, crosses};
 use crate::geom::polyline;
 use crate::geom::region::Region;
+use crate::geom::segment::{SegmentGrid, crosses};
 use crate::shapes::{Lines, Shapes, closed, passes, polylines};
 use kurbo::{Affine, Point, Rect};
 use rinceau_format::{Container, Error, Guide, Scene};

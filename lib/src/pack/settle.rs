@@ -2,16 +2,17 @@
 
 use super::choose::Pose;
 use super::fill::Filler;
-use super::mould::{Moving, Pieces};
+use super::mould::Pieces;
 use super::params::Sizes;
 use super::place::{FINER, Placement, bent_and_checked, is_inside, sides, silhouette};
 use super::prepare::Prepared;
+use super::skin::Moving;
 use super::template::Template;
 use crate::geom::bend::{Bend, warped};
 use crate::geom::boolean::{Contour, area};
 use crate::geom::crossing::self_crossings;
 use crate::geom::flatten::flatten;
-use crate::geom::near::{SegmentGrid, segment_segment};
+use crate::geom::segment::{SegmentGrid, segment_segment};
 use crate::geom::warp::Warp;
 use kurbo::{BezPath, ParamCurve, Point};
 use rayon::prelude::*;

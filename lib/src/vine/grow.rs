@@ -22,7 +22,7 @@ use super::params::{Params, Sizes, of_level};
 use super::particle::{Charge, Form, Law, Node, follow, unit};
 use super::plait::{self, Crossing};
 use super::stem::{Stem, Taper};
-use crate::geom::near::point_segment;
+use crate::geom::segment::point_segment;
 use crate::rng::Rng;
 use kurbo::{Point, Rect, Vec2};
 use std::collections::BinaryHeap;

@@ -123,7 +123,7 @@ pub(super) fn is_clean(below: (&Stem, f64), above: (&Stem, f64), gap: f64) -> bo
     let clear = |at: kurbo::Point| {
         line.windows(2).all(|pair| {
             let half = pair[0].1.max(pair[1].1);
-            crate::geom::near::point_segment(at, pair[0].0, pair[1].0) > half + KEPT * gap
+            crate::geom::segment::point_segment(at, pair[0].0, pair[1].0) > half + KEPT * gap
         })
     };
     [(cut.from, -1.0), (cut.to, 1.0)].into_iter().all(|(end, way)| {

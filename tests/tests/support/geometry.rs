@@ -4,8 +4,8 @@
 use super::root;
 use kurbo::{Affine, BezPath, Point, Rect};
 use rinceau::geom::flatten::flatten;
-use rinceau::geom::near::segment_segment;
 use rinceau::geom::region::Region;
+use rinceau::geom::segment::segment_segment;
 use rinceau::params::Values;
 use rinceau::{Deadline, GENERATORS, Generator};
 use rinceau_format::{Artwork, Document, Error, Item, Part, Recipe, Scene, Selection};

@@ -6,8 +6,8 @@ use super::geometry::*;
 use kurbo::Point;
 use rinceau::geom::boolean::{area, signed_area, simplified};
 use rinceau::geom::flatten::flatten;
-use rinceau::geom::near::crosses;
 use rinceau::geom::region::Region;
+use rinceau::geom::segment::crosses;
 use rinceau_format::{Artwork, Error, Scene};
 
 /// An area that nobody sees: a hundredth of the square of the above in a drawing of 400 units.

@@ -1,7 +1,7 @@
 //! Whether what is drawn lies in the panel.
 
-use crate::geom::near::segment_segment;
 use crate::geom::region::Region;
+use crate::geom::segment::segment_segment;
 use kurbo::{BezPath, ParamCurve, PathEl, PathSeg, Point};
 
 /// True if a path, drawn so far to its sides, lies in a region. Curves are looked at closely only where
