@@ -14,18 +14,20 @@
 //! article's N places is the very tip, where nothing can fork; the N places lie between the
 //! ends here.
 
+mod order;
 mod place;
+mod way;
 
 use super::cells::{Cells, Owner};
 use super::clip_art::{Choices, Library, PlacedArt};
 use super::params::{Params, Sizes, of_level};
 use super::particle::{Charge, Form, Law, Node, follow, unit};
-use super::plait::{self, Crossing};
+use super::plait::Crossing;
 use super::stem::{Stem, Taper};
 use crate::geom::segment::point_segment;
 use crate::rng::Rng;
 use kurbo::{Point, Rect, Vec2};
-use std::collections::BinaryHeap;
+pub(super) use way::{Fork, Met};
 
 /// A curl ends where its width times its curvature is more than this.
 const TIGHT: f64 = 1.3;
@@ -33,12 +35,8 @@ const TIGHT: f64 = 1.3;
 const SHORTER: f64 = 0.87;
 /// A branch is at least this many times longer than it is wide.
 const SLENDER: f64 = 13.0;
-/// And at most so many times.
-const LONGEST_WIDTHS: f64 = 75.0;
 /// Both sides of a stem, in the order they are tried.
 const SIDES: [f64; 2] = [1.0, -1.0];
-/// Forks of one stem are at least this many widths apart on one side.
-const FORK_WIDTHS: f64 = 3.0;
 
 /// A plant while it grows in one container.
 pub(super) struct Plant<'a> {
@@ -80,33 +78,6 @@ struct Site {
     start: Node,
     s: f64,
     side: f64,
-}
-
-/// Twice the index of a site, one more for its other side, and the length to try there next, the longest first.
-#[derive(Clone, Copy, Debug)]
-struct Offer {
-    length: f64,
-    site: usize,
-}
-
-impl PartialEq for Offer {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-
-impl Eq for Offer {}
-
-impl PartialOrd for Offer {
-    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Offer {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.length.total_cmp(&other.length).then(other.site.cmp(&self.site))
-    }
 }
 
 impl<'a> Plant<'a> {
@@ -203,89 +174,6 @@ impl<'a> Plant<'a> {
         finished
     }
 
-    /// The longest first, wherever there is room.
-    fn branch_by_length(&mut self, most: usize, mut go_on: impl FnMut(f64) -> bool) -> bool {
-        let (mut heap, mut sites) = (BinaryHeap::new(), Vec::new());
-        // Stems from before have had their turn.
-        for parent in self.grown..self.stems.len() {
-            self.offer(parent, &mut heap, &mut sites);
-        }
-        let mut forks: Vec<Vec<(f64, f64)>> = vec![Vec::new(); self.stems.len()];
-        let mut popped = 0;
-        while let Some(offer) = heap.pop() {
-            const ASK_EVERY: usize = 64;
-            popped += 1;
-            if popped % ASK_EVERY == 0 && !go_on(self.stems.len() as f64 / most as f64) {
-                return false;
-            }
-            let mut site: Site = sites[offer.site / 2];
-            site.side = SIDES[offer.site % 2];
-            let stem = &self.stems[site.parent];
-            let limit = of_level(&self.params.branches, stem.level).unwrap_or(0.0) as usize;
-            let apart = FORK_WIDTHS * (stem.width(site.s) + self.sizes.gap);
-            let taken = &forks[site.parent];
-            let close = |&(s, side): &(f64, f64)| {
-                (s - site.s).abs() < if side == site.side { 2.0 * apart } else { 0.5 * apart }
-            };
-            if taken.len() >= limit || taken.iter().any(close) || self.is_occupied(site.parent, site.s) {
-                continue;
-            }
-            // What a look rules out needs no turn of its own.
-            let length = self.not_ruled_out(&site, offer.length);
-            if length < self.shortest() {
-                continue;
-            }
-            if length < offer.length {
-                heap.push(Offer { length, ..offer });
-                continue;
-            }
-            match self.fitting(&site, length, length * SHORTER * 1.01) {
-                Some((branch, crossings)) => {
-                    forks[site.parent].push((site.s, site.side));
-                    self.crossings = crossings;
-                    let index = self.grow(branch, &site);
-                    forks.push(Vec::new());
-                    if self.stems.len() >= most {
-                        return false;
-                    }
-                    self.offer(index, &mut heap, &mut sites);
-                }
-                None => heap.push(Offer { length: length * SHORTER, ..offer }),
-            }
-        }
-        true
-    }
-
-    /// Places on a stem, with the longest that may leave there.
-    fn offer(&self, parent: usize, heap: &mut BinaryHeap<Offer>, sites: &mut Vec<Site>) {
-        let stem = &self.stems[parent];
-        if stem.level + 1 >= self.params.levels {
-            return;
-        }
-        let length = stem.end;
-        let step = (1.4 * stem.taper.start + self.sizes.gap).max(length / 32.0);
-        // Not at the very start, where the parent is still near, nor under the tip's flower.
-        let mut s = match stem.parent {
-            Some(_) => (0.06 * length).max(2.0 * step).max(self.partings[parent]),
-            None => 0.6 * step,
-        };
-        while s < 0.96 * length {
-            // What is taken stays so: most places are ruled out at once, while the stem is at hand.
-            if !self.is_occupied(parent, s) {
-                let (site, longest) = (2 * sites.len(), self.longest(parent, s));
-                let start = Site { parent, start: stem.at(s), s, side: SIDES[0] };
-                for (i, side) in SIDES.into_iter().enumerate() {
-                    let length = self.not_ruled_out(&Site { side, ..start }, longest);
-                    if length >= self.shortest() {
-                        heap.push(Offer { length, site: site + i });
-                    }
-                }
-                sites.push(start);
-            }
-            s += step;
-        }
-    }
-
     /// The arc length from which on a branch is clear of its parent's stroke. What left it before
     /// would start in that stroke as well.
     fn parting(&self, branch: &Stem) -> f64 {
@@ -300,51 +188,6 @@ impl<'a> Plant<'a> {
             near.into_iter().any(|pair| point_segment(node.p, pair[0].p, pair[1].p) < clear)
         };
         branch.nodes.iter().find(|node| !is_in_parent(node)).map_or(branch.length(), |node| node.s)
-    }
-
-    /// The longest branch that the rules allow.
-    fn longest(&self, parent: usize, s: f64) -> f64 {
-        let stem = &self.stems[parent];
-        let own = self.sizes.length[(stem.level + 1).min(self.sizes.length.len() - 1)];
-        // A main stem that was drawn short may still carry long branches.
-        let natural = self.params.rule == "natural" && stem.parent.is_some();
-        // What is still to come of the parent is what nature leaves for a branch.
-        let of_parent = if natural { (stem.length() - 0.6 * s).max(0.0) } else { f64::INFINITY };
-        // Nor longer than its width can carry: a hair that runs through the whole shape.
-        own.min(of_parent).min(LONGEST_WIDTHS * stem.width(s))
-    }
-
-    /// The article's places: N per stem at equal intervals, sides in turn, level by level.
-    fn branch_in_order(&mut self, most: usize, mut go_on: impl FnMut(f64) -> bool) -> bool {
-        let mut parent = self.grown;
-        while parent < self.stems.len() {
-            if !go_on(parent as f64 / self.stems.len() as f64) {
-                return false;
-            }
-            let (level, length) = (self.stems[parent].level, self.stems[parent].end);
-            let count = of_level(&self.params.branches, level).unwrap_or(0.0) as usize;
-            let parting = self.partings[parent];
-            // The first branch leaves on the inside of its parent's curl.
-            let first = self.stems[parent].side;
-            for i in 0..if level + 1 < self.params.levels { count } else { 0 } {
-                let s = (i + 1) as f64 / (count + 1) as f64 * length;
-                let side = if i % 2 == 0 { first } else { -first };
-                let site = Site { parent, start: self.stems[parent].at(s), s, side };
-                if s < parting || self.is_occupied(parent, s) {
-                    continue;
-                }
-                let longest = self.longest(parent, s);
-                if let Some((branch, crossings)) = self.fitting(&site, longest, self.shortest()) {
-                    self.crossings = crossings;
-                    self.grow(branch, &site);
-                    if self.stems.len() >= most {
-                        return false;
-                    }
-                }
-            }
-            parent += 1;
-        }
-        true
     }
 
     /// Nothing shorter grows: a twig as thin as the gap is as thin as anything should be.
@@ -517,169 +360,6 @@ impl<'a> Plant<'a> {
         1.0 + BETA * libm::exp(-distance / reach)
     }
 
-    /// What a curve with a width meets: nothing but its parent near the fork, or in plait-work
-    /// stems that it crosses steeply. `None` if it touches anything else.
-    pub fn way(
-        &self,
-        nodes: impl Iterator<Item = Node>,
-        length: f64,
-        taper: &Taper,
-        fork: Option<Fork>,
-    ) -> Option<Vec<Met>> {
-        let size = self.cells.size();
-        let mut way = Way { left: fork.is_none(), before: 0.0, met: Vec::new(), crossing: false };
-        let mut last: Option<Node> = None;
-        for node in nodes {
-            let half = taper.at(node.s / length) / 2.0;
-            let step = size.max(half);
-            if last.is_some_and(|last| node.s < last.s + 0.9 * step) && node.s < length {
-                continue;
-            }
-            let from = last.unwrap_or(node);
-            let pieces = ((node.s - from.s) / (1.3 * step)).ceil().max(1.0);
-            for k in 1..=pieces as usize {
-                let node = from.between(&node, k as f64 / pieces);
-                if !self.goes_on(&mut way, &node, half, length, fork) {
-                    return None;
-                }
-            }
-            // A curl ends where it gets tighter than it is wide.
-            if node.s > 0.5 * length && node.curvature.abs() * 2.0 * half > TIGHT {
-                break;
-            }
-            last = Some(node);
-        }
-        (way.left && !way.crossing).then_some(way.met)
-    }
-
-    /// True if a curve may come to a place.
-    #[inline]
-    fn goes_on(&self, way: &mut Way, node: &Node, half: f64, length: f64, fork: Option<Fork>) -> bool {
-        let (mut at_parent, mut at_other) = (false, None);
-        let left = way.left;
-        // Farther along the other stem is another winding of it.
-        let nearby = 4.0 * (half + self.sizes.width + self.sizes.gap);
-        let was_at = way.met.last().filter(|_| way.crossing).map(|met| met.place);
-        let free = self.cells.allows(node.p, half, node.s - way.before, |owner, place| {
-            if let Some(fork) = fork.filter(|fork| !left && owner.stem() == Some(fork.stem)) {
-                at_parent = true;
-                return (place - fork.s).abs() <= fork.reach && node.s <= fork.reach;
-            }
-            let other = owner.stem().filter(|_| self.params.plait && left);
-            let same = other.is_some()
-                && at_other.is_none_or(|(stem, at): (usize, f64)| {
-                    Some(stem) == other && (at - place).abs() < nearby
-                })
-                && was_at.is_none_or(|at| (at - place).abs() < nearby);
-            at_other = at_other.or(other.map(|stem| (stem, place)));
-            same
-        });
-        if !free {
-            return false;
-        }
-        way.left |= !at_parent;
-        way.before = node.s;
-        let was_crossing = std::mem::replace(&mut way.crossing, at_other.is_some());
-        let Some((stem, place)) = at_other else {
-            // It has to come out on the other side.
-            return !was_crossing || way.met.last().is_none_or(|met| met.before * met.after < 0.0);
-        };
-        let last = way.met.last_mut().filter(|_| was_crossing);
-        if !self.is_crossed(stem, place, node, (node.s, length), last.as_deref()) {
-            return false;
-        }
-        let side = plait::side(&self.stems[stem], place, node.p);
-        match last {
-            Some(last) => (last.s, last.place, last.after) = (node.s, place, side),
-            None => way.met.push(Met { stem, s: node.s, place, before: side, after: side }),
-        }
-        true
-    }
-
-    /// True if no branch may leave a stem at a place: another crosses it there, or has left and is
-    /// not clear of it yet, or the base of a leaf lies within it.
-    fn is_occupied(&self, stem: usize, s: f64) -> bool {
-        let near = self.stems[stem].width(s) + self.sizes.gap;
-        let at_base = |&(at, size): &(f64, f64)| (at - s).abs() < 0.4 * size + near;
-        let is_shared = |&(from, to): &(f64, f64)| (from..to).contains(&s);
-        self.is_near_crossing(stem, s)
-            || self.attached[stem].iter().any(at_base)
-            || self.shared[stem].iter().any(is_shared)
-    }
-
-    /// True if a place on a stem is too near a crossing for anything to grow there.
-    fn is_near_crossing(&self, stem: usize, s: f64) -> bool {
-        let apart = 3.0 * (self.stems[stem].width(s) + 2.0 * self.sizes.gap + self.sizes.width);
-        self.crossings
-            .iter()
-            .flat_map(|crossing| crossing.at)
-            .any(|(own, at)| own == stem && (at - s).abs() < apart)
-    }
-
-    /// True if a place on another stem may be crossed there: steeply, away from its ends and
-    /// from one's own tip.
-    fn is_crossed(
-        &self,
-        stem: usize,
-        place: f64,
-        node: &Node,
-        (s, length): (f64, f64),
-        last: Option<&Met>,
-    ) -> bool {
-        const FROM_ENDS: f64 = 0.06;
-        let other = &self.stems[stem];
-        let tangent = other.at(place).along;
-        let (share, own) = (place / other.end.max(f64::MIN_POSITIVE), s / length);
-        node.along.cross(tangent).abs() > plait::LEAST_SINE
-            && share > FROM_ENDS
-            && share < 1.0 - 2.0 * FROM_ENDS
-            && own < 0.8
-            && last.is_none_or(|last| last.stem == stem)
-    }
-
-    /// All crossings, those of a new branch included. `None` if over and under cannot alternate
-    /// then, or where it does not cross cleanly.
-    fn crossings(&self, branch: &Stem, met: &[Met]) -> Option<Vec<Crossing>> {
-        /// More would hide the branch.
-        const MOST: usize = 4;
-        if met.is_empty() {
-            return Some(self.crossings.clone());
-        }
-        let index = self.stems.len();
-        let mut crossings = self.crossings.clone();
-        for met in met {
-            let other = &self.stems[met.stem];
-            let (s, place) = plait::meet(branch, met.s, other, met.place)?;
-            let gap = plait::GAP * self.sizes.gap;
-            if !plait::is_clean((branch, s), (other, place), gap)
-                || !plait::is_clean((other, place), (branch, s), gap)
-            {
-                return None;
-            }
-            // The gaps of two crossings must not run into each other, nor into a fork.
-            let apart = 3.0 * (other.width(place) + branch.width(s) + 2.0 * self.sizes.gap);
-            let close = |stem: usize, at: f64| {
-                crossings
-                    .iter()
-                    .flat_map(|crossing| crossing.at)
-                    .any(|(own, s)| own == stem && (s - at).abs() < apart)
-            };
-            let forks = self.stems.iter().filter_map(|stem| stem.parent);
-            let near_fork = |(parent, s): (usize, f64)| parent == met.stem && (s - place).abs() < apart;
-            let holds = |&(at, _): &(f64, f64)| (at - place).abs() < apart;
-            if self.attached[met.stem].iter().any(holds)
-                || close(met.stem, place)
-                || close(index, s)
-                || forks.into_iter().any(near_fork)
-                || s < apart
-            {
-                return None;
-            }
-            crossings.push(Crossing { at: [(index, s), (met.stem, place)] });
-        }
-        (met.len() <= MOST && plait::alternate(&crossings).is_some()).then_some(crossings)
-    }
-
     /// A branch in its place, and what grows at its fork and its tip.
     fn grow(&mut self, branch: Stem, site: &Site) -> usize {
         let index = self.add(branch);
@@ -692,38 +372,6 @@ impl<'a> Plant<'a> {
     pub fn form(&self, level: usize) -> &Form {
         &self.forms[level]
     }
-}
-
-/// What is known of a curve up to some place.
-struct Way {
-    /// True once it has left its parent.
-    left: bool,
-    /// Arc length of the place before.
-    before: f64,
-    /// The stems that it crosses.
-    met: Vec<Met>,
-    /// True while it is over another stem.
-    crossing: bool,
-}
-
-/// Another stem on a curve's way.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Met {
-    stem: usize,
-    /// Arc lengths on the curve and on the other.
-    s: f64,
-    place: f64,
-    /// On which side of the other the curve came, and left.
-    before: f64,
-    after: f64,
-}
-
-/// Where a branch leaves its parent: near there it may touch it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Fork {
-    pub stem: usize,
-    pub s: f64,
-    pub reach: f64,
 }
 
 /// From a form to its place.
