@@ -5,12 +5,13 @@
 //! no hole stays. A seed of lower priority that has to wait comes again when the seed it waits for
 //! has had its turn.
 
+mod close;
+mod mend;
+
 use super::example::Analysis;
 use super::ground::Ground;
-use super::relax::ring_error;
 use super::ring::{Around, Match, Turn, Weights, best, rotated, sort_around};
 use crate::geom::near::PointGrid;
-use crate::geom::segment::crosses;
 use crate::rng::Rng;
 use kurbo::{Point, Vec2};
 use std::cmp::Reverse;
@@ -20,8 +21,6 @@ use std::collections::BinaryHeap;
 const SHORT: f64 = 0.5;
 /// An angle less than this share of the example's is too narrow (E-033).
 const NARROW: f64 = 0.5;
-/// An edge this many times longer than the example's makes room for another seed (E-035).
-const LONG: f64 = 1.5;
 /// Seeds of higher priority count within so many mean edges (E-023).
 const NEIGHBOURHOOD: f64 = 5.0;
 
@@ -345,114 +344,6 @@ impl<'a> Arrangement<'a> {
         }
     }
 
-    /// A cure for errors that gather in places (E-062): where the ring of an element lost or gained
-    /// neighbours, or does not fit them, or one of them is a copy of the same element, another element
-    /// of the same symbol that fits better takes its place. How many did.
-    pub fn mend(&mut self) -> usize {
-        /// Whole rings that are nearer to the example's than this, in mean edges, are well.
-        const WELL: f64 = 0.25;
-        let mut mended = 0;
-        for number in 0..self.grown.len() {
-            let index = self.grown[number];
-            let object = &self.objects[index as usize];
-            let Some((copy, _)) = object.copy else { continue };
-            let is_whole = object.is_whole();
-            let (sum, count) = ring_error(&self.objects, object, self.ground);
-            let present = (sum / count.max(1.0)).sqrt() / self.example.mean;
-            let copy_of = |i: u32| self.objects[i as usize].copy.map(|copy| copy.0);
-            let repeats = object.edges.iter().any(|&other| copy_of(other) == Some(copy));
-            if is_whole && present < WELL && !repeats {
-                continue;
-            }
-            let Some((around, found)) = self.fitting(index) else { continue };
-            if repeats && around.iter().any(|&other| copy_of(other) == Some(found.element)) {
-                mended += usize::from(self.vary(index));
-                continue;
-            }
-            let ring = &self.example.elements[found.element].ring;
-            if repeats && around.len() != object.edges.len() {
-                mended += usize::from(self.vary(index));
-                continue;
-            }
-            // Only against repeats may some of its ring be missing.
-            if around.len() != object.edges.len()
-                || ring.len() != around.len() && !repeats
-                || is_whole && found.element == copy
-            {
-                continue;
-            }
-            let links: Vec<Link> = around
-                .iter()
-                .enumerate()
-                .map(|(i, &to)| {
-                    let own = &ring[(found.shift + i) % ring.len()];
-                    Link { to, offset: rotated(own.offset, found.turn), element: own.element as u32 }
-                })
-                .collect();
-            let mended_object = Object { ring: links, ..object.clone() };
-            let (sum, count) = ring_error(&self.objects, &mended_object, self.ground);
-            let better = (sum / count.max(1.0)).sqrt() / self.example.mean < 0.9 * present;
-            let is_new = around.iter().all(|&other| copy_of(other) != Some(found.element));
-            if !is_new || is_whole && !(better || repeats) {
-                continue;
-            }
-            self.objects[index as usize] =
-                Object { copy: Some((found.element, found.turn)), ..mended_object };
-            mended += 1;
-        }
-        mended
-    }
-
-    /// Makes an element a copy of another of its symbol than all its neighbours are, in its place and with
-    /// its ring: the last way out against repeats. False if there is none.
-    fn vary(&mut self, index: u32) -> bool {
-        let object = &self.objects[index as usize];
-        let Some((copy, turn)) = object.copy else { return false };
-        let is_near = |element: usize| {
-            let others = object.edges.iter().filter_map(|&other| self.objects[other as usize].copy);
-            others.into_iter().any(|(other, _)| other == element)
-        };
-        let symbol = self.example.elements[copy].symbol;
-        let alike = (0..self.example.elements.len())
-            .filter(|&element| self.example.elements[element].symbol == symbol && !is_near(element));
-        let difference = |&element: &usize| Distance(self.example.difference(copy, element));
-        let Some(other) = alike.min_by_key(difference) else { return false };
-        self.objects[index as usize].copy = Some((other, turn));
-        true
-    }
-
-    /// The share of elements whose rings are broken: neighbours missing, or one too many.
-    pub fn broken(&self) -> f64 {
-        let is_broken = |&&i: &&u32| {
-            let object = &self.objects[i as usize];
-            let is_seed = |link: &Link| self.objects[link.to as usize].copy.is_none();
-            let (sum, count) = ring_error(&self.objects, object, self.ground);
-            !object.is_whole()
-                || object.ring.iter().any(is_seed)
-                || (sum / count.max(1.0)).sqrt() > 0.2 * self.example.mean
-        };
-        self.grown.iter().filter(is_broken).count() as f64 / self.grown.len().max(1) as f64
-    }
-
-    /// Which objects are within so many steps of what has grown since some number of elements.
-    pub fn near_new(&self, since: usize, steps: usize) -> Vec<bool> {
-        let mut is_near = vec![false; self.objects.len()];
-        let mut front: Vec<u32> = self.grown[since.min(self.grown.len())..].to_vec();
-        front.iter().for_each(|&i| is_near[i as usize] = true);
-        for _ in 0..steps {
-            let mut next = Vec::new();
-            for &i in &front {
-                for &j in &self.objects[i as usize].edges {
-                    if !std::mem::replace(&mut is_near[j as usize], true) {
-                        next.push(j);
-                    }
-                }
-            }
-            front = next;
-        }
-        is_near
-    }
-
     /// Neighbours of a seed counter-clockwise, and the element of the example that suits them best.
     fn fitting(&self, seed: u32) -> Option<(Vec<u32>, Match)> {
         let object = &self.objects[seed as usize];
@@ -561,109 +452,6 @@ impl<'a> Arrangement<'a> {
             let it = &self.objects[other as usize];
             let apart = it.symbol.map_or(self.example.least, |own| self.example.apart(symbol, own));
             found = other != seed && !it.is_gone && p.distance(at) < CROWDED * apart;
-            !found
-        });
-        found
-    }
-
-    /// The edge between two neighbours of an element; where it is too long, a seed between them; and
-    /// where something lies in the triangle, edges to that.
-    fn close(&mut self, (centre, o): (u32, Point), (a, b): (u32, u32), original: f64) {
-        let (p, q) = (self.at(a, o), self.at(b, o));
-        if self.objects[a as usize].edges.contains(&b) {
-            return;
-        }
-        if self.collides((a, b), p, q) {
-            self.join_inside((centre, o), (a, p), (b, q));
-            return;
-        }
-        if p.distance(q) > LONG * original && self.extra(centre, (a, b), (o, p, q)) {
-            return;
-        }
-        self.connect(a, b);
-    }
-
-    /// A seed of any symbol on the bisector of a wide angle (E-035).
-    fn extra(&mut self, centre: u32, (a, b): (u32, u32), (o, p, q): (Point, Point, Point)) -> bool {
-        let (u, v) = (p - o, q - o);
-        let (lu, lv) = (u.hypot(), v.hypot());
-        let way = u / lu + v / lv;
-        // Across, where the angle is straight.
-        let way = if way.hypot() < 1e-6 { Vec2::new(-u.y, u.x) / lu } else { way / way.hypot() };
-        let way = if u.cross(v) < 0.0 { -way } else { way };
-        let at = o + 0.5 * (lu + lv) * way;
-        let is_free = self.nearest(centre, at, SHORT * self.example.least).is_none();
-        if !is_free
-            || self.ground.divides(o, at)
-            || self.collides((centre, centre), o, at)
-            || self.collides((a, a), p, at)
-            || self.collides((b, b), q, at)
-        {
-            return false;
-        }
-        let new = self.sow(at, None);
-        for other in [centre, a, b] {
-            self.connect(new, other);
-        }
-        true
-    }
-
-    /// Joins what lies in a triangle to its corners (E-036).
-    fn join_inside(&mut self, (centre, o): (u32, Point), (a, p): (u32, Point), (b, q): (u32, Point)) {
-        let reach = p.distance(q).max(o.distance(p)).max(o.distance(q));
-        let side = |u: Point, v: Point, at: Point| (v - u).cross(at - u);
-        let sense = side(o, p, q).signum();
-        let mut inside: Vec<(u32, Point)> = Vec::new();
-        self.grid.visit(o, reach, |at, other| {
-            let is_inside = [(o, p), (p, q), (q, o)].into_iter().all(|(u, v)| side(u, v, at) * sense > 0.0);
-            if is_inside && !self.objects[other as usize].is_gone && ![centre, a, b].contains(&other) {
-                inside.push((other, at));
-            }
-            true
-        });
-        for (other, at) in inside {
-            for (corner, from) in [(centre, o), (a, p), (b, q)] {
-                let is_linked = self.objects[other as usize].edges.contains(&corner);
-                if !is_linked && !self.collides((corner, other), from, at) {
-                    self.connect(corner, other);
-                }
-            }
-        }
-    }
-
-    /// The nearest object within a radius, another than one's own.
-    fn nearest(&self, own: u32, at: Point, radius: f64) -> Option<u32> {
-        let mut nearest: Option<(f64, u32)> = None;
-        self.grid.visit(at, radius, |p, other| {
-            let distance = p.distance(at);
-            if other != own
-                && distance < radius
-                && !self.objects[other as usize].is_gone
-                && nearest.is_none_or(|best| (distance, other) < best)
-            {
-                nearest = Some((distance, other));
-            }
-            true
-        });
-        nearest.map(|(_, other)| other)
-    }
-
-    /// True if a new edge would cross another. `ends` are objects at its ends.
-    fn collides(&self, ends: (u32, u32), p: Point, q: Point) -> bool {
-        let longest = 2.0 * self.example.mean;
-        let reach = 0.5 * p.distance(q) + 0.5 * longest;
-        let is_end = |i: u32| i == ends.0 || i == ends.1;
-        let mut found = false;
-        let middle = p.midpoint(q);
-        self.grid.visit(middle, reach, |at, other| {
-            if at.distance_squared(middle) > reach * reach
-                || is_end(other)
-                || self.objects[other as usize].is_gone
-            {
-                return true;
-            }
-            let edges = self.objects[other as usize].edges.iter();
-            found = edges.filter(|&&to| !is_end(to)).any(|&to| crosses(p, q, at, self.at(to, at)));
             !found
         });
         found
