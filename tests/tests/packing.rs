@@ -130,6 +130,21 @@ fn refinement_inserts_small_elements_and_evens_the_gaps() {
     assert!(filled["evenness"] > before["evenness"], "{before:?} {filled:?}");
 }
 
+/// Strokes are ink: gaps between them are as even as between outlines.
+#[test]
+fn gaps_between_strokes_are_filled_too() {
+    let largest = |stroke: &str| {
+        let scene = scene(&format!(
+            "<circle class='rinceau-container' cx='200' cy='200' r='120'/><g class='rinceau-element' id='e'><path d='M600,0C610,-10 630,-10 640,0C630,10 610,10 600,0Z' fill='#284' stroke='#c40' stroke-width='{stroke}'/><path class='rinceau-spine' d='M600,0H640' fill='none'/></g>"
+        ));
+        rinceau::quality::measure(&scene, &packed(&scene, &[("spacing", "25")])).unwrap()["largest_gap"]
+    };
+    for stroke in ["0", "2", "5"] {
+        let largest = largest(stroke);
+        assert!(largest < 1.6, "stroke {stroke}: {largest}");
+    }
+}
+
 #[test]
 fn worn_and_rounded_elements_stay_within_themselves() {
     let scene = heart();
@@ -199,9 +214,10 @@ fn one_connected_piece_is_nowhere_thinner_than_a_bridge() {
         assert!(area(&difference(&piece, &offset(&opened, 0.03 * width))) < 1e-3 * area(&piece));
         assert!(artwork.counts["bridges"] > 5.0, "{:?}", artwork.counts);
     }
-    let refused =
-        pack(&heart(), &[("connect", "true".to_owned()), ("bridge", "90".to_owned())], 1).unwrap_err();
-    assert_eq!(refused.code(), "bridge-too-wide");
+    for bridge in ["90", "1e9"] {
+        let refused = pack(&heart(), &[("connect", "true".to_owned()), ("bridge", bridge.to_owned())], 1);
+        assert_eq!(refused.unwrap_err().code(), "bridge-too-wide");
+    }
 }
 
 #[test]
@@ -342,15 +358,20 @@ fn awkward_guides_are_followed_as_well_as_can_be() {
 }
 
 #[test]
-fn of_fixed_spines_that_cross_the_first_carries_an_element() {
-    let spines = ["M60,200C150,160 250,240 340,200", "M200,60C160,150 240,250 200,340", "M100,300H300"];
+fn of_fixed_spines_in_one_place_the_first_carries_an_element() {
+    let spines = [
+        "M60,200C150,160 250,240 340,200",
+        "M200,60C160,150 240,250 200,340",
+        "M100,300H300",
+        "M340,200C250,240 150,160 60,200",
+    ];
     let spines: String =
         spines.map(|d| format!("<path class='rinceau-fixed-spine' fill='none' d='{d}'/>")).concat();
     let scene = scene(&format!("<circle class='rinceau-container' cx='200' cy='200' r='190'/>{spines}"));
     let artwork = packed(&scene, &[]);
     assert_eq!(
         artwork.warnings,
-        ["1 of 3 fixed spines carry no element: they cross others that lie below them"]
+        ["2 of 4 fixed spines carry no element: others that lie below cross them or run there too"]
     );
     // A line of elements along the first.
     let along = |item: &rinceau_format::Item| {

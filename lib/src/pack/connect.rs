@@ -41,6 +41,11 @@ pub(super) fn join(
     let core = |item: &&Item| -> Vec<Contour> {
         let covered: Vec<Contour> =
             item.parts.iter().flat_map(|part| area_of(part, 0.5 * tolerance)).collect();
+        // Nothing that is done here goes beyond its box: offsets far larger than a shape would take long.
+        let sides = polyline::bounds(covered.iter().flatten().copied()).unwrap_or_default().size();
+        if sides.min_side() < 2.0 * radius {
+            return Vec::new();
+        }
         // Slits that are narrower than a bridge would cut a leaf into its ribs.
         let grown = light(offset(&light(simplified(&covered, false), tolerance), 0.5 * width), tolerance);
         let closed = light(offset(&grown, -0.5 * width), tolerance);

@@ -10,8 +10,10 @@ use super::template::Template;
 use crate::field::DirectionField;
 use crate::geom::boolean::{Contour, signed_area};
 use crate::geom::flatten::flatten;
+use crate::geom::polyline;
 use crate::geom::region::Region;
 use crate::geom::warp::Warp;
+use crate::shapes::closed;
 use kurbo::{Affine, BezPath, Point, Vec2};
 
 /// Rounds in which the middle of a gap is found.
@@ -121,7 +123,7 @@ pub(super) fn fill(
         all.push((index, Gaps::new(field, region, &covered, sizes)));
     }
     // Strokes take a part of the gaps that outlines leave.
-    let mean = if room.nooks { mean_gap(&all) - 0.3 * placement.widest_stroke() } else { 0.0 };
+    let mean = if room.nooks { mean_gap(&all) - mean_stroke(placement, fillers, &all) } else { 0.0 };
     for (done, (index, gaps)) in all.into_iter().enumerate() {
         let field = &prepared.fields[index];
         let done = 0.5 + 0.5 * done as f64 / prepared.fields.len() as f64;
@@ -140,6 +142,25 @@ fn mean_gap(all: &[(usize, Gaps)]) -> f64 {
     let all = all.iter().map(|(_, gaps)| gaps.emptiness());
     let (area, sum) = all.fold((0.0, 0.0), |all, one| (all.0 + one.0, all.1 + one.1));
     2.0 * sum / f64::max(area, f64::MIN_POSITIVE)
+}
+
+/// Half the mean stroke width along all outlines, those of regions too, which have none.
+fn mean_stroke(placement: &Placement, fillers: &[Filler], all: &[(usize, Gaps)]) -> f64 {
+    if placement.widest_stroke() == 0.0 {
+        return 0.0;
+    }
+    let length = |contours: &[Contour]| -> f64 {
+        contours.iter().map(|contour| polyline::length(&closed(contour))).sum()
+    };
+    let outlines = placement.placed.iter().map(|placed| &placed.outlines);
+    let outlines = outlines.chain(fillers.iter().map(|filler| &filler.outlines));
+    let mut total: f64 = all.iter().map(|(_, gaps)| length(gaps.region().contours())).sum();
+    let mut sum = 0.0;
+    for (length, stroke) in outlines.map(|outlines| length(outlines)).zip(placement.strokes()) {
+        sum += length * stroke;
+        total += length;
+    }
+    sum / total.max(f64::MIN_POSITIVE)
 }
 
 /// What may go into the gaps of a container.

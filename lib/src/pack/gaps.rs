@@ -162,6 +162,11 @@ impl<'a> Gaps<'a> {
         self.emptiness = (step * step * count + strip, step * step * sum + strip * edge / 2.0);
     }
 
+    /// Where they are.
+    pub fn region(&self) -> &Region {
+        self.region
+    }
+
     /// Area of the gaps in the region and in the strip around it that nooks keep free, and the integral of the
     /// distances to what is beside them.
     pub fn emptiness(&self) -> (f64, f64) {

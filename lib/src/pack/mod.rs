@@ -121,7 +121,11 @@ pub fn generate(
         let tone = palette(&first.params.palette, scene.containers[first.container].fill.as_deref())[0];
         let step = |done| progress.step("connect", done);
         let sizes = (first.sizes.bridge, first.sizes.tolerance());
-        artwork.complete &= connect::join(&mut artwork, &prepared.fixed, sizes, tone, step)?;
+        if !connect::join(&mut artwork, &prepared.fixed, sizes, tone, step)? {
+            artwork.complete = false;
+            let late = "The time ran out before all was joined to one piece; give it more (--time-limit)";
+            artwork.warnings.push(late.to_owned());
+        }
     }
     if prepared.fields.iter().any(|field| field.params.show_gaps) {
         artwork.groups.extend(map::map(scene, &artwork)?);

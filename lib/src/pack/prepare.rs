@@ -51,7 +51,7 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
     let shapes = Shapes::new(scene, &[])?;
     let tolerance = shapes.tolerance;
     let guides = polylines(&scene.guides, tolerance);
-    let (spines, crossing) = apart(polylines(&scene.fixed_spines, tolerance), shapes.bounds);
+    let (spines, crossing) = apart(polylines(&scene.fixed_spines, tolerance), &shapes);
     check_guides(&scene.guides, &guides, &shapes.containers)?;
 
     let mut prepared = Prepared {
@@ -95,29 +95,37 @@ pub(super) fn prepare(params: &Params, scene: &Scene) -> Result<Prepared, Error>
     Ok(prepared)
 }
 
-/// Lines without those that cross an earlier one, since two elements cannot lie in one place, and what to say
-/// of these.
-fn apart(lines: Lines, bounds: Rect) -> (Lines, Option<String>) {
-    let all = lines.len();
+/// Lines without those that cross an earlier one or run along it, since two elements cannot lie in one place, and
+/// what to say of these.
+fn apart(lines: Lines, shapes: &Shapes) -> (Lines, Option<String>) {
+    /// The most that two lines may have in common, as a share of the second. A fork has less.
+    const COMMON: f64 = 0.05;
+    let (all, bounds) = (lines.len(), shapes.bounds);
     let mut taken = SegmentGrid::new(bounds, bounds.size().max_side() / 100.0);
     let mut kept = Lines::new();
     for (owner, line) in lines {
-        let is_free = |side: &[Point]| {
-            let mut is_free = true;
+        let crosses_one = |side: &[Point]| {
+            let mut found = false;
             taken.visit(side[0], side[1], 0.0, |p, q, _| {
-                is_free = !crosses(side[0], side[1], p, q);
-                is_free
+                found = crosses(side[0], side[1], p, q);
+                !found
             });
-            is_free
+            found
         };
-        if line.windows(2).all(is_free) {
+        // Chords of the same curve may differ by as much as they do from it.
+        let near = 4.0 * shapes.tolerance;
+        let points = polyline::resample(&line, 100);
+        let common = points.iter().filter(|p| taken.distance(**p, near) < near).count();
+        let is_apart = common as f64 <= COMMON * points.len() as f64;
+        if is_apart && !line.windows(2).any(crosses_one) {
             line.windows(2).for_each(|side| taken.insert(side[0], side[1], owner as u32));
             kept.push((owner, line));
         }
     }
     let crossing = all - kept.len();
-    let told =
-        format!("{crossing} of {all} fixed spines carry no element: they cross others that lie below them");
+    let told = format!(
+        "{crossing} of {all} fixed spines carry no element: others that lie below cross them or run there too"
+    );
     (kept, (crossing > 0).then_some(told))
 }
 
