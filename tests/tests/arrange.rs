@@ -3,7 +3,7 @@
 
 mod support;
 
-use kurbo::{Affine, Point};
+use kurbo::{Affine, Point, Rect, Shape};
 use proptest::prelude::*;
 use rinceau::geom::region::Region;
 use rinceau_format::{Artwork, Scene};
@@ -268,6 +268,8 @@ mod tiles {
             let tile = kurbo::Shape::bounding_box(&tile);
             let artwork = arranged(&scene, &[]);
             let all = pieces(&artwork, "elements");
+            // Only what reaches into the tile is drawn.
+            assert!(all.iter().all(|piece| bounds(piece).inflate(0.1, 0.1).overlaps(tile)));
             let over = |x: Option<f64>, y: Option<f64>| -> Vec<Point> {
                 let mut over: Vec<Point> = all
                     .iter()
@@ -405,6 +407,45 @@ fn samples_are_like_their_examples() {
         assert!(counts["symbols-apart"] < 0.05, "{name}: {}", counts["symbols-apart"]);
         assert!(counts["neighbours-apart"] < 0.05, "{name}: {}", counts["neighbours-apart"]);
         assert!(counts["residual"] < if name == "bricks" || name == "euro" { 0.02 } else { 0.25 }, "{name}");
+    }
+}
+
+/// Dots keep most of the room that those of the example have, and alike ones most of their distance.
+#[test]
+fn alike_elements_are_no_nearer_than_in_the_example() {
+    let (_, scene) =
+        read(std::fs::read_to_string(support::root().join("samples/arrange/confetti.svg")).unwrap());
+    let dots = |boxes: Vec<Rect>| -> Vec<(Point, f64)> {
+        boxes.iter().map(|b| (b.center(), 0.5 * b.width())).collect()
+    };
+    // Among those with about this radius, and the room between any two.
+    let nearest = |dots: &[(Point, f64)], radius: f64| {
+        let (mut nearest, mut room) = (f64::INFINITY, f64::INFINITY);
+        for (i, &(a, own)) in dots.iter().enumerate() {
+            for &(b, other) in &dots[..i] {
+                room = room.min(a.distance(b) - own - other);
+                if (own - radius).abs() < 0.1 && (other - radius).abs() < 0.1 {
+                    nearest = nearest.min(a.distance(b));
+                }
+            }
+        }
+        (nearest, room)
+    };
+    let examples = &scene.references[0].examples;
+    let drawn = dots(
+        examples
+            .iter()
+            .map(|one| (one.parts[0].transform * one.parts[0].path.clone()).bounding_box())
+            .collect(),
+    );
+    for seed in 1..=4 {
+        let artwork = generated("arrange", &scene, &[], seed).unwrap();
+        let grown = dots(pieces(&artwork, "elements").iter().map(|piece| bounds(piece)).collect());
+        for radius in [7.2, 5.4, 3.6] {
+            let ((example, room), (nearest, left)) = (nearest(&drawn, radius), nearest(&grown, radius));
+            assert!(nearest > 0.7 * example, "{seed}: {nearest} of {example} between dots of {radius}");
+            assert!(left > 0.6 * room, "{seed}: {left} of {room}");
+        }
     }
 }
 

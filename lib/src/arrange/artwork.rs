@@ -152,8 +152,10 @@ impl Drawing {
             let element = &example.elements[copy];
             let points = || element.extent.points.iter().map(|v| varied * v.to_point()).map(Point::to_vec2);
             let radius = points().map(|v| v.hypot()).fold(0.0, f64::max);
+            let bounds = points().map(|v| Rect::from_points(v.to_point(), v.to_point()));
+            let bounds = bounds.reduce(|all, one| all.union(one)).unwrap_or_default();
             let mut images = Vec::new();
-            ground.each_image(object.at, radius, |at| images.push(at));
+            ground.each_image(object.at, bounds, |at| images.push(at));
             for at in images {
                 let hull: Vec<Point> = points().map(|v| at + v).collect();
                 if outline.is_some_and(|outline| !outline.shows(&params.edge, at, &hull, radius))

@@ -12,6 +12,8 @@ use std::collections::{BTreeMap, BTreeSet};
 const SKEWED: f64 = 2.0 * std::f64::consts::FRAC_PI_3;
 /// Elements that are farther from each other than this share of their sizes are not too near.
 const ROOM: f64 = 1.12;
+/// The least distance of two symbols is meant if so many pairs would be nearer to each other by chance.
+const BY_CHANCE: f64 = 4.0;
 /// An element is missing where it is by this much emptier than anywhere in the example, and nothing is
 /// nearer than this share of the least distance between two symbols.
 const HOLLOW: f64 = 1.2;
@@ -56,11 +58,17 @@ pub(super) struct Analysis {
     pub least: f64,
     /// Where nothing is nearer than this, an element is missing.
     pub hollow: f64,
-    /// Least distance between two of each pair of symbols, and the largest of these.
+    /// Least distance between two of each pair of symbols, no more than keeps them from touching, and
+    /// the largest of these.
     apart: Vec<f64>,
     pub reach: f64,
+    /// Least distance where it is not by chance, and the largest.
+    spread: Vec<f64>,
+    pub spread_reach: f64,
     /// How deep two of each pair of symbols lie in each other at most.
     depths: Vec<f64>,
+    /// The least room between any two elements; 0 if some touch.
+    pub room: f64,
     /// How much the rings of two elements differ.
     differences: Vec<f32>,
     /// Edges of the connectivity, each with the lesser index first.
@@ -176,15 +184,29 @@ impl Analysis {
         for element in &mut elements {
             element.extent = Extent::new(&reference.examples[element.index], element.at, mean);
         }
-        let (apart, depths) = spaces(&elements, symbols.len());
+        let Spaces { apart, spread, depths, room } = spaces(&elements, symbols.len(), mean);
+        let spread_reach = spread.iter().copied().fold(mean, f64::max);
         let reach = apart.iter().copied().fold(mean, f64::max);
         let widest = triangles.iter().map(|t| circumradius(t.map(|i| points[i]))).fold(0.0, f64::max);
         let nearest = apart.iter().copied().fold(f64::INFINITY, f64::min);
         let hollow = f64::max(HOLLOW * widest, NEAREST * nearest);
         let edges = edges.into_iter().collect();
         let differences = Vec::new();
-        let mut analysis =
-            Analysis { elements, symbols, mean, least, hollow, apart, reach, depths, differences, edges };
+        let mut analysis = Analysis {
+            elements,
+            symbols,
+            mean,
+            least,
+            hollow,
+            apart,
+            reach,
+            spread,
+            spread_reach,
+            depths,
+            room,
+            differences,
+            edges,
+        };
         analysis.compare();
         Ok(analysis)
     }
@@ -199,7 +221,8 @@ impl Analysis {
         stretched.mean *= both;
         stretched.least *= both.min(1.0);
         stretched.hollow *= both;
-        stretched.apart.iter_mut().for_each(|apart| *apart *= both.min(1.0));
+        let distances = stretched.apart.iter_mut().chain(&mut stretched.spread);
+        distances.for_each(|distance| *distance *= both.min(1.0));
         stretched
     }
 
@@ -231,9 +254,14 @@ impl Analysis {
         self.depths[a * self.symbols.len() + b]
     }
 
-    /// Least distance between two symbols in the example.
+    /// Least distance between two symbols in the example, no more than keeps them from touching.
     pub fn apart(&self, a: usize, b: usize) -> f64 {
         self.apart[a * self.symbols.len() + b]
+    }
+
+    /// Least distance between two symbols in the example, where it is not by chance.
+    pub fn spread(&self, a: usize, b: usize) -> f64 {
+        self.spread[a * self.symbols.len() + b]
     }
 
     /// Middles of elements farther from each other than this do not touch.
@@ -247,24 +275,66 @@ impl Analysis {
     }
 }
 
+/// Distances of each pair of symbols.
+struct Spaces {
+    apart: Vec<f64>,
+    spread: Vec<f64>,
+    depths: Vec<f64>,
+    /// The least room between any two elements; 0 if some touch.
+    room: f64,
+}
+
+/// How near to each other two of one pair of symbols come.
+#[derive(Clone, Copy)]
+struct Nearest {
+    pairs: f64,
+    /// The least distance, and the same but no more than keeps them from touching.
+    least: f64,
+    apart: f64,
+    /// Within this distance the largest of them touch.
+    touching: f64,
+    depth: f64,
+}
+
 /// Least distances between symbols, and how deep they lie in each other.
-fn spaces(elements: &[Element], n: usize) -> (Vec<f64>, Vec<f64>) {
-    let (mut apart, mut depths) = (vec![f64::INFINITY; n * n], vec![0.0; n * n]);
+fn spaces(elements: &[Element], n: usize, mean: f64) -> Spaces {
+    let none = Nearest { pairs: 0.0, least: f64::INFINITY, apart: f64::INFINITY, touching: 0.0, depth: 0.0 };
+    let mut all = vec![none; n * n];
+    let mut room = mean;
     let straight = Vec2::new(1.0, 0.0);
     for (i, a) in elements.iter().enumerate() {
         for b in &elements[..i] {
-            // Rare ones may be far from each other in the example without meaning it.
-            let room = ROOM * 0.5 * (a.bounds.size().max_side() + b.bounds.size().max_side());
-            let deep =
-                a.extent.depth(straight, (&b.extent, straight), b.at - a.at, 0.0).map_or(0.0, |deep| deep.0);
-            for pair in [a.symbol * n + b.symbol, b.symbol * n + a.symbol] {
-                apart[pair] = apart[pair].min(a.at.distance(b.at)).min(room);
-                depths[pair] = f64::max(depths[pair], deep);
+            let size = 0.5 * (a.bounds.size().max_side() + b.bounds.size().max_side());
+            let distance = a.at.distance(b.at);
+            let deep = a.extent.depth(straight, (&b.extent, straight), b.at - a.at, -mean);
+            let deep = deep.map_or(-mean, |deep| deep.0);
+            room = room.min(-deep);
+            let both = [a.symbol * n + b.symbol, b.symbol * n + a.symbol];
+            for &pair in &both[..if a.symbol == b.symbol { 1 } else { 2 }] {
+                let Nearest { pairs, least, apart, touching, depth } = &mut all[pair];
+                *pairs += 1.0;
+                *least = least.min(distance);
+                // Rare ones may be far from each other in the example without meaning it.
+                *apart = apart.min(distance).min(ROOM * size);
+                *touching = touching.max(size);
+                *depth = depth.max(deep);
             }
         }
     }
-    apart.iter_mut().filter(|least| !least.is_finite()).for_each(|least| *least = 0.0);
-    (apart, depths)
+    let middles = elements.iter().map(|element| Rect::from_points(element.at, element.at));
+    let area = middles.reduce(|all, one| all.union(one)).map_or(0.0, |all| all.area());
+    let apart = |of: &Nearest| if of.pairs > 0.0 { of.apart } else { 0.0 };
+    let spread = |of: &Nearest| {
+        let ring = std::f64::consts::PI * (of.least.powi(2) - of.touching.powi(2));
+        let is_meant = of.pairs > 0.0 && of.pairs * ring > BY_CHANCE * area;
+        apart(of).max(if is_meant { of.least } else { 0.0 })
+    };
+    Spaces {
+        apart: all.iter().map(apart).collect(),
+        spread: all.iter().map(spread).collect(),
+        depths: all.iter().map(|of| of.depth).collect(),
+        room: room.max(0.0),
+    }
 }
 
 pub(super) fn angle(v: Vec2) -> f64 {

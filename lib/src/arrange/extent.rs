@@ -50,7 +50,8 @@ impl Extent {
     }
 
     /// How deep two elements lie in each other, and the shortest way out for the first; `None` if it is
-    /// no more than `allowed`. `between` is from the middle of the first to that of the second.
+    /// no more than `allowed`. What is apart has a depth below 0: the room between, or less where corners
+    /// face each other. `between` is from the middle of the first to that of the second.
     pub fn depth(
         &self,
         turn: Vec2,
@@ -58,7 +59,7 @@ impl Extent {
         between: Vec2,
         allowed: f64,
     ) -> Option<(f64, Vec2)> {
-        if between.hypot() >= self.radius + other.radius {
+        if between.hypot() >= self.radius + other.radius - allowed.min(0.0) {
             return None;
         }
         let mut least: Option<(f64, Vec2)> = None;
@@ -162,6 +163,8 @@ mod tests {
         let (a, b) = (square(1.0), square(2.0));
         assert!(a.depth(none, (&b, none), Vec2::new(3.01, 0.0), 0.0).is_none());
         assert!(a.depth(none, (&b, none), Vec2::new(3.01, 2.0), 0.0).is_none());
+        let (depth, out) = a.depth(none, (&b, none), Vec2::new(3.5, 0.5), -1.0).unwrap();
+        assert!(depth == -0.5 && out == Vec2::new(-1.0, 0.0), "{depth} {out:?}");
         let (depth, out) = a.depth(none, (&b, none), Vec2::new(2.75, 0.5), 0.0).unwrap();
         assert!(
             (depth - 0.25).abs() < 1e-12 && (out - Vec2::new(-1.0, 0.0)).hypot() < 1e-12,

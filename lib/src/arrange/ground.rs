@@ -68,16 +68,19 @@ impl Ground {
         at + by
     }
 
-    /// Visits all images of a place that are nearer to the bounds than `reach`, itself first.
-    pub fn each_image(&self, at: Point, reach: f64, visit: impl FnMut(Point)) {
+    /// Visits all images of a place that are within the bounds with what reaches so far around them, itself
+    /// first.
+    pub fn each_image(&self, at: Point, reach: Rect, visit: impl FnMut(Point)) {
         if !self.repeats {
             return std::iter::once(at).for_each(visit);
         }
-        let around = self.bounds.inflate(reach, reach);
         let (width, height) = (self.bounds.width(), self.bounds.height());
         let moves = (0..9).map(|i| Vec2::new(f64::from((i + 1) % 3 - 1), f64::from((i / 3 + 1) % 3 - 1)));
         let all = moves.map(|by| at + Vec2::new(by.x * width, by.y * height));
-        all.enumerate().filter(|(i, p)| *i == 0 || around.contains(*p)).map(|(_, p)| p).for_each(visit);
+        all.enumerate()
+            .filter(|(i, p)| *i == 0 || self.bounds.overlaps(reach + p.to_vec2()))
+            .map(|(_, p)| p)
+            .for_each(visit);
     }
 
     /// True if a line crosses a boundary that was drawn.

@@ -13,7 +13,7 @@ use super::ground::Ground;
 use super::ring::{Around, Match, Turn, Weights, best, rotated, sort_around};
 use crate::geom::near::PointGrid;
 use crate::rng::Rng;
-use kurbo::{Point, Vec2};
+use kurbo::{Point, Rect, Vec2};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -205,8 +205,8 @@ impl<'a> Arrangement<'a> {
     }
 
     fn enter(&mut self, at: Point, object: u32) {
-        self.ground
-            .each_image(at, NEIGHBOURHOOD * self.example.mean, |image| self.grid.insert(image, object));
+        let reach = NEIGHBOURHOOD * self.example.mean;
+        self.ground.each_image(at, Rect::ZERO.inflate(reach, reach), |image| self.grid.insert(image, object));
     }
 
     fn add(&mut self, at: Point, symbol: Option<usize>) -> u32 {

@@ -20,14 +20,16 @@
 //! Where no example is drawn, a built-in one fills the shapes (`builtin`).
 //!
 //! Beyond the paper: the neighbours' own rings count in the comparison (E-060, `ring`); where errors
-//! gather elements are chosen again (E-062, `Arrangement::mend`); elements keep apart by their outlines
-//! (E-063, `extent`, `part`); patterns repeat as tiles; the example's connectivity is drawn, and edges are
+//! gather elements are chosen again (E-062, `Arrangement::mend`), and where alike ones lie nearer than in
+//! the example they change places (`exchange`); elements keep apart by their outlines, with most of the
+//! room that the example's have (E-063, `extent`, `part`); patterns repeat as tiles; the example's connectivity is drawn, and edges are
 //! flipped there (`connect`); numbers say how like its example a result is (`measure`).
 
 mod artwork;
 mod builtin;
 pub mod connect;
 mod example;
+mod exchange;
 mod extent;
 mod ground;
 mod grow;
@@ -422,6 +424,7 @@ impl One<'_> {
                 let steps = if round == MENDED { relax::STEPS } else { 2 * relax::FEW_STEPS };
                 let fixed = relaxed(arrangement, ground, example, (steps, (self.params.window, settled)));
                 if round == MENDED || (arrangement.mend() == 0 && round > 0) {
+                    exchange::exchange(arrangement, &fixed, (example, &rules.ranks), ground);
                     part::part(arrangement, &fixed, example, ground);
                     break;
                 }

@@ -4,7 +4,7 @@ use super::example::Analysis;
 use super::ground::Ground;
 use super::grow::{Arrangement, Object};
 use crate::geom::near::PointTable;
-use kurbo::Vec2;
+use kurbo::{Rect, Vec2};
 
 /// Nearer than this share of the least distance that two symbols have in the example, elements move
 /// apart; and nearer than that, one of them goes.
@@ -33,7 +33,7 @@ fn pair(own: &Object, other: &Object, between: Vec2, example: &Analysis) -> Opti
     let allowed = allowed(example, a.symbol, b.symbol);
     let enough = allowed + DEEP * example.mean;
     if let Some((depth, out)) = a.extent.depth(turn, (&b.extent, other_turn), between, enough) {
-        (away, is_bad) = ((depth - allowed) * out, allowed == 0.0);
+        (away, is_bad) = ((depth - allowed) * out, allowed <= 0.0 && depth > DEEP * example.mean);
     }
     let (distance, least) = (between.hypot(), example.apart(a.symbol, b.symbol));
     if distance < NEAR * least - SLACK * example.mean && away == Vec2::ZERO {
@@ -44,21 +44,24 @@ fn pair(own: &Object, other: &Object, between: Vec2, example: &Analysis) -> Opti
     (away != Vec2::ZERO).then_some(Pair { away, is_bad })
 }
 
-/// How deep two symbols may lie in each other: not at all, if they do not in the example; scales and
-/// feathers now more and now less.
+/// How deep two symbols may lie in each other: as deep as in the example and a little more, as scales and
+/// feathers do; where nothing touches in the example, below 0: some of its least room stays between them.
 fn allowed(example: &Analysis, a: usize, b: usize) -> f64 {
     const MORE: f64 = 1.4;
+    const KEPT: f64 = 0.7;
     match example.deep(a, b) {
         deep if deep > DEEP * example.mean => MORE * deep,
-        _ => 0.0,
+        _ => -KEPT * example.room,
     }
 }
 
-fn table(arrangement: &Arrangement, ground: &Ground, reach: f64) -> PointTable<u32> {
+/// Where the elements are, and those of their images that something is nearer to than `reach`.
+pub(super) fn table(arrangement: &Arrangement, ground: &Ground, reach: f64) -> PointTable<u32> {
     let margin = if ground.repeats { 1.3 * reach } else { 0.0 };
     let mut points = Vec::with_capacity(arrangement.grown.len());
     for &i in &arrangement.grown {
-        ground.each_image(arrangement.objects[i as usize].at, margin, |image| points.push((image, i)));
+        let around = Rect::ZERO.inflate(margin, margin);
+        ground.each_image(arrangement.objects[i as usize].at, around, |image| points.push((image, i)));
     }
     PointTable::new(ground.bounds.inflate(margin, margin), 0.5 * reach, points.iter().copied())
 }
@@ -66,7 +69,7 @@ fn table(arrangement: &Arrangement, ground: &Ground, reach: f64) -> PointTable<u
 /// Moves elements apart that came nearer to each other than any of their symbols are in the example,
 /// and takes out the younger of those that still are.
 pub(super) fn part(arrangement: &mut Arrangement, fixed: &[bool], example: &Analysis, ground: &Ground) {
-    let reach = example.reach.max(example.widest());
+    let reach = example.reach.max(example.widest() + example.room);
     // What stands as it stood with all others need not be looked at again.
     let mut has_moved = vec![true; arrangement.objects.len()];
     let mut table = table(arrangement, ground, reach);
@@ -160,7 +163,7 @@ pub(super) fn collisions(arrangement: &Arrangement, example: &Analysis, ground: 
             if let (Some((a, turn)), Some((b, other_turn))) = (own.copy, other.copy) {
                 let (a, b) = (&example.elements[a], &example.elements[b]);
                 // What moves apart may stop a little before it is.
-                let enough = allowed(example, a.symbol, b.symbol) + 2.0 * DEEP * example.mean;
+                let enough = allowed(example, a.symbol, b.symbol).max(0.0) + 2.0 * DEEP * example.mean;
                 let depth = a.extent.depth(turn, (&b.extent, other_turn), at - own.at, enough);
                 found += usize::from(depth.is_some());
             }
