@@ -12,10 +12,10 @@ pub(crate) fn appearance(role: Role) -> &'static [(&'static str, &'static str)] 
         Role::Guide | Role::Spine => &[("fill", "none"), ("stroke", "#ff0000")],
         Role::Stem | Role::Boundary => &[("fill", "none"), ("stroke", "#0000ff")],
         Role::FixedSpine => &[("fill", "none"), ("stroke", "#00aa00")],
-        Role::Fixed => &[("fill", "#00aa00")],
         Role::Seed | Role::Tack => &[("fill", "#ff7f00")],
         Role::Spray => &[("fill", "none"), ("stroke-opacity", "0.3")],
-        Role::Element | Role::Form | Role::Clone | Role::Reference | Role::Rules => &[],
+        // What is fixed is part of the picture.
+        Role::Fixed | Role::Element | Role::Form | Role::Clone | Role::Reference | Role::Rules => &[],
     }
 }
 

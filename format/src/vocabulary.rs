@@ -2,6 +2,8 @@
 
 /// The namespace of every attribute and element of the format.
 pub const NAMESPACE: &str = "urn:rinceau:1";
+/// The attribute in it for the style that an object has without its mark.
+pub(crate) const OWN_STYLE: &str = "own-style";
 /// The SVG namespace.
 pub(crate) const SVG: &str = "http://www.w3.org/2000/svg";
 /// Inkscape's namespace: labels and layers.

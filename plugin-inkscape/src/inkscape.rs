@@ -148,7 +148,8 @@ impl Call {
             )
         })?;
         let seed = self.take("seed").and_then(|text| text.parse().ok()).unwrap_or(1);
-        let seconds: f64 = self.take("time-limit").and_then(|text| text.parse().ok()).unwrap_or(LONGEST_RUN);
+        let asked = self.take("time-limit").and_then(|text| text.parse().ok());
+        let seconds: f64 = asked.filter(|seconds: &f64| !seconds.is_nan()).unwrap_or(LONGEST_RUN);
         let is_quick = self.take("quality").is_some_and(|quality| quality == "quick");
         let seconds = if is_quick { QUICK_RUN } else { seconds.clamp(QUICK_RUN, LONGEST_RUN) };
         let values = self.values(generator)?;

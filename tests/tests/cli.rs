@@ -504,10 +504,30 @@ mod marks {
         };
         assert_eq!(style("container"), "fill:none;stroke:#000000");
         assert_eq!(style("guide"), "fill:none;stroke:#ff0000;marker-end:url(#rinceau-arrow)");
-        assert_eq!(style("fixed"), "fill:#00aa00");
+        assert_eq!(style("fixed"), "", "what is fixed is part of the picture");
         assert_eq!(style("element"), "");
         let text = marked(&plain, "guide");
         assert_eq!(by_id(&parse(&text), "rinceau-arrow").tag_name().name(), "marker");
+    }
+
+    /// Marks that are cleared leave an object as it was; what was changed meanwhile stays changed.
+    #[test]
+    fn give_the_look_back() {
+        let drawn =
+            "<path id=\"it\" fill=\"#123456\" style=\"fill: #d40000; stroke:none\" d=\"M0,0 H90 V90 Z\"/>\n";
+        let plain = svg(drawn);
+        let none = |text: &str| text.replace(" xmlns:rinceau=\"urn:rinceau:1\"", "");
+        for role in ["container", "guide", "fixed", "stem", "seed", "boundary", "fixed-spine"] {
+            let with = marked(&plain, role);
+            assert_eq!(none(&marked(&with, "none")), none(&plain), "{role}");
+            let twice = marked(&marked(&with, "guide"), "container");
+            assert_eq!(none(&marked(&twice, "none")), none(&plain), "{role}, guide, container");
+        }
+        let changed = marked(&plain, "guide").replace("stroke:#ff0000", "stroke:#abcdef;stroke-width:3");
+        let cleared = marked(&changed, "none");
+        let style = by_id(&parse(&cleared), "it").attribute("style").unwrap().to_owned();
+        assert_eq!(style, "stroke:#abcdef;stroke-width:3;fill:#d40000");
+        assert!(!cleared.contains("rinceau-arrow") && !cleared.contains("own-style"));
     }
 
     /// One role after the other: the last counts, and no trace of the first stays.

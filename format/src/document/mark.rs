@@ -5,15 +5,15 @@ use super::edit::{splice, start_tag_end, tag_name};
 use crate::error::Error;
 use crate::look::{self, ARROW, appearance};
 use crate::read::{Resolver, unknown_id};
-use crate::vocabulary::{NAMESPACE, Role};
+use crate::vocabulary::{NAMESPACE, OWN_STYLE, Role};
 use crate::write::{attribute, escaped};
 use crate::xml::PlainAttribute;
 use roxmltree::Node;
 use std::ops::Range;
 
 impl Document {
-    /// Gives the objects a role: attribute, class, and the colours of the papers' diagrams.
-    /// `None` clears role and class and leaves the colours.
+    /// Gives the objects a role: attribute, class, and the colours of the papers' diagrams. Their own
+    /// style is kept beside (`rinceau:own-style`), and `None` brings it back.
     ///
     /// Errors: an id that no object or two objects have, or that comes out of an entity.
     pub fn with_role(&self, ids: &[String], role: Option<Role>) -> Result<Document, Error> {
@@ -30,11 +30,24 @@ impl Document {
             self.check_verbatim(xml.root_element())?;
             let prefix = if role.is_some() { self.declare(xml, &mut edits) } else { String::new() };
             for &node in &nodes {
-                let style = role.map(|role| marked_style(node.plain("style").unwrap_or(""), role));
-                self.put_role(node, role, &prefix, style, &mut edits)?;
+                let now = node.plain("style").unwrap_or("");
+                let kept = node.attribute((NAMESPACE, OWN_STYLE));
+                let own = kept.map_or_else(|| now.to_owned(), |own| unmarked_style(now, own));
+                let look = match role {
+                    Some(role) => {
+                        let style = marked_style(&own, role);
+                        let own = (own != style).then_some(own);
+                        Some(Look { style, own })
+                    }
+                    None => kept.map(|_| Look { style: own, own: None }),
+                };
+                self.put_role(node, role, &prefix, look, &mut edits)?;
             }
-            if role == Some(Role::Guide) && resolver.by_id(ARROW, None)?.is_none() {
+            let has_arrow = resolver.by_id(ARROW, None)?.is_some();
+            if role == Some(Role::Guide) && !has_arrow {
                 edits.extend(self.arrow(xml));
+            } else if role != Some(Role::Guide) && has_arrow {
+                edits.extend(self.arrow_unused(xml, &nodes));
             }
             Ok(splice(&self.text, edits))
         })?;
@@ -66,13 +79,13 @@ impl Document {
         prefix
     }
 
-    /// Edits that set or clear the role of an object, and its style if there is one.
+    /// Edits that set or clear the role of an object, and its look if there is one.
     pub(super) fn put_role(
         &self,
         node: Node,
         role: Option<Role>,
         prefix: &str,
-        style: Option<String>,
+        look: Option<Look>,
         edits: &mut Vec<(Range<usize>, String)>,
     ) -> Result<(), Error> {
         self.check_verbatim(node)?;
@@ -110,8 +123,9 @@ impl Document {
         let class =
             others.into_iter().map(str::to_owned).chain(role.map(Role::class)).collect::<Vec<_>>().join(" ");
         put(find(None, "class"), "class", Some(class).filter(|class| !class.is_empty()));
-        if let Some(style) = style {
+        if let Some(Look { style, own }) = look {
             put(find(None, "style"), "style", Some(style).filter(|style| !style.is_empty()));
+            put(find(Some(NAMESPACE), OWN_STYLE), &format!("{prefix}:{OWN_STYLE}"), own);
         }
         if !fresh.is_empty() {
             let (tag_end, _) = start_tag_end(&self.text[range.clone()]);
@@ -132,6 +146,55 @@ impl Document {
         let newline = self.newline();
         let marker = format!("{newline}{}", look::arrow(p));
         (!closes).then_some((at..at, marker))
+    }
+
+    /// Takes the arrow head out again, if it stands as we put it there and nothing but these objects has
+    /// it.
+    fn arrow_unused(&self, xml: &roxmltree::Document, nodes: &[Node]) -> Option<(Range<usize>, String)> {
+        let root = xml.root_element();
+        let p = tag_name(&self.text[root.range()]).strip_suffix("svg").unwrap_or("");
+        let marker = format!("{}{}", self.newline(), look::arrow(p));
+        let reference = format!("#{ARROW}");
+        let is_used = root.descendants().filter(|node| !nodes.contains(node)).any(|node| {
+            node.attributes().any(|a| a.value().contains(&reference))
+                || node.is_text() && node.text().is_some_and(|text| text.contains(&reference))
+        });
+        let at = self.text.find(&marker).filter(|_| !is_used)?;
+        Some((at..at + marker.len(), String::new()))
+    }
+}
+
+/// What a mark does to the look of an object.
+pub(super) struct Look {
+    style: String,
+    /// The style that it hides, if it hides any.
+    own: Option<String>,
+}
+
+/// The style that an object has without its mark: its own, with what was changed since it was marked.
+fn unmarked_style(now: &str, own: &str) -> String {
+    let is_marks = |name: &str, value: &str| {
+        Role::ALL.iter().flat_map(|&role| appearance(role)).any(|&(n, v)| n == name && v == value)
+            || name == "marker-end" && value.contains(ARROW)
+    };
+    let changed = crate::css::declarations(now).filter(|d| !is_marks(d.name, d.value));
+    let text = |d: &simplecss::Declaration| {
+        format!("{}:{}{}", d.name, d.value, if d.important { " !important" } else { "" })
+    };
+    let mut changed: Vec<(&str, String)> = changed.map(|d| (d.name, text(&d))).collect();
+    let before: Vec<(&str, String)> = crate::css::declarations(own).map(|d| (d.name, text(&d))).collect();
+    // What the mark hid, and nothing was put in place of.
+    let hidden = before.iter().filter(|(name, _)| !changed.iter().any(|(other, _)| other == name));
+    let hidden: Vec<(&str, String)> = hidden.cloned().collect();
+    changed.extend(hidden);
+    let sorted = |list: &[(&str, String)]| {
+        let mut all: Vec<String> = list.iter().map(|(_, text)| text.clone()).collect();
+        all.sort_unstable();
+        all
+    };
+    match sorted(&changed) == sorted(&before) {
+        true => own.to_owned(),
+        false => changed.into_iter().map(|(_, text)| text).collect::<Vec<_>>().join(";"),
     }
 }
 

@@ -12,7 +12,7 @@ use crate::scene::{
 };
 use crate::shape::points_of;
 use crate::units::mean_scale;
-use crate::vocabulary::{INKSCAPE, NAMESPACE, Role};
+use crate::vocabulary::{INKSCAPE, NAMESPACE, OWN_STYLE, Role};
 use kurbo::{Affine, BezPath, ParamCurve, PathEl, Point, Rect, Shape};
 use roxmltree::{Node, NodeId};
 use std::collections::{BTreeMap, HashMap};
@@ -362,10 +362,9 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
     /// Parameters that an object sets for itself.
     fn overrides(&self, node: NodeId) -> BTreeMap<String, String> {
         let node = self.resolver.xml.get_node(node);
-        let ours = node
-            .iter()
-            .flat_map(|node| node.attributes())
-            .filter(|a| a.namespace() == Some(NAMESPACE) && !matches!(a.name(), "role" | "parent"));
+        let ours = node.iter().flat_map(|node| node.attributes()).filter(|a| {
+            a.namespace() == Some(NAMESPACE) && !matches!(a.name(), "role" | "parent" | OWN_STYLE)
+        });
         ours.map(|a| (a.name().to_owned(), a.value().to_owned())).collect()
     }
 
