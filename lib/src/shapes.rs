@@ -57,11 +57,15 @@ impl Shapes {
             }
         }
         let fixed = fixed_area(&scene.fixed, tolerance);
-        let areas = containers
-            .iter()
-            .map(|shape| boolean::area(&boolean::difference(shape, &near(&fixed, shape, 0.0))))
-            .collect();
-        Ok(Shapes { bounds, size, tolerance, containers, areas, fixed })
+        let mut shapes = Shapes { bounds, size, tolerance, containers, areas: Vec::new(), fixed };
+        shapes.measure();
+        Ok(shapes)
+    }
+
+    /// Takes the areas of containers that have changed.
+    pub fn measure(&mut self) {
+        let free = |shape: &Vec<Contour>| boolean::difference(shape, &near(&self.fixed, shape, 0.0));
+        self.areas = self.containers.iter().map(|shape| boolean::area(&free(shape))).collect();
     }
 
     /// Decimals of coordinates for results of this size.

@@ -213,3 +213,30 @@ proptest! {
         prop_assert!(filled || moulded.counts["coverage"] > with(0.0).counts["coverage"]);
     }
 }
+
+/// A shape in several parts, as a word is, gets ornament in each of them from every generator that fills
+/// shapes; a part that is far too small for any stays empty.
+#[test]
+fn every_part_of_a_shape_is_filled() {
+    let parts = [(20.0, 120.0), (150.0, 40.0), (300.0, 140.0)];
+    let square = |(x, side): (f64, f64)| format!("M{x},30h{side}v{side}h{}z", -side);
+    let path = parts.map(square).concat() + "M5,5h0.5v0.5h-0.5z";
+    // The first has a hole with an island in it.
+    let hole = "M40,50v80h80v-80zM60,70h40v40h-40z";
+    let (_, scene) =
+        read(support::svg(&format!("<path id='three' class='rinceau-container' d='{path}{hole}'/>")));
+    for generator in ["pack", "grow", "vine"] {
+        let artwork = generated(generator, &scene, &[], 1).unwrap();
+        let drawn: Vec<Point> = artwork
+            .groups
+            .iter()
+            .filter(|group| !group.hidden)
+            .flat_map(|group| pieces(&artwork, &group.name))
+            .map(|piece| bounds(&piece).center())
+            .collect();
+        for (x, side) in parts.into_iter().chain([(60.0, 40.0)]) {
+            let count = drawn.iter().filter(|p| (x..x + side).contains(&p.x)).count();
+            assert!(count >= 2, "{generator}: {count} pieces at {x}");
+        }
+    }
+}

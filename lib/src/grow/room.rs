@@ -131,6 +131,11 @@ impl Room {
         self.coarse.widest().or_else(|| self.fine.widest())
     }
 
+    /// As [`Space::widest_in`].
+    pub fn widest_in(&self, part: &Region) -> Option<Point> {
+        self.coarse.widest_in(part).or_else(|| self.fine.widest_in(part))
+    }
+
     /// As [`Space::widest_by`].
     pub fn widest_by(&self, other: impl Fn(Point) -> f64) -> Option<Point> {
         self.coarse.widest_by(other)

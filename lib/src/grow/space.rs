@@ -12,6 +12,7 @@
 mod exclude;
 
 use super::piece::Piece;
+use crate::geom::region::Region;
 use kurbo::{Point, Rect, Vec2};
 
 /// The nearest thing is the boundary.
@@ -407,10 +408,25 @@ impl Space {
 
     /// The middle of the widest place.
     pub fn widest(&self) -> Option<Point> {
-        let inside = (0..self.near.len()).filter(|&i| self.near[i].by != OUTSIDE);
+        self.widest_of((0..self.near.len()).filter(|&i| self.near[i].by != OUTSIDE))
+    }
+
+    /// The same in a part of the region.
+    pub fn widest_in(&self, part: &Region) -> Option<Point> {
+        let bounds = part.bounds();
+        let from = (bounds.origin() - self.origin) / self.cell;
+        let to = (Point::new(bounds.x1, bounds.y1) - self.origin) / self.cell;
+        let range = |a: f64, b: f64, n: usize| a.max(0.0) as usize..(b.max(0.0).ceil() as usize).min(n);
+        let columns = range(from.x, to.x, self.columns);
+        let rows = range(from.y, to.y, self.rows);
+        let cells = rows.flat_map(|y| columns.clone().map(move |x| (x, y))).map(|(x, y)| self.number(x, y));
+        self.widest_of(cells.filter(|&i| self.near[i].by != OUTSIDE && part.contains(self.middle(i))))
+    }
+
+    fn widest_of(&self, cells: impl Iterator<Item = usize>) -> Option<Point> {
         // Where all is equally far, as in the open plane, the middle.
         let center = self.origin + 0.5 * self.cell * Vec2::new(self.columns as f64, self.rows as f64);
-        inside
+        cells
             .max_by(|&a, &b| {
                 let far = |i: usize| center.distance(self.middle(i));
                 let of = |i: usize| self.near[i].distance;

@@ -115,7 +115,19 @@ impl Start<'_> {
                 let inner: Vec<Point> = inner.take(MOST_SEEDS).collect();
                 if inner.is_empty() { widest().into_iter().collect() } else { inner }
             }
-            _ => widest().into_iter().collect(),
+            _ => match &world.region {
+                // One in each part of the shape, as in each letter of a word.
+                Some(region) if world.images().len() == 1 => {
+                    let mut parts = boolean::parts(region.contours().to_vec());
+                    parts.reverse();
+                    if parts.len() < 2 {
+                        return widest().into_iter().collect();
+                    }
+                    let parts = parts.into_iter().take(MOST_SEEDS).filter_map(Region::new);
+                    parts.filter_map(|part| world.space.widest_in(&part)).collect()
+                }
+                _ => widest().into_iter().collect(),
+            },
         }
     }
 

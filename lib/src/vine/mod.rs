@@ -28,6 +28,7 @@ mod stem;
 
 pub use params::Params;
 
+use crate::geom::boolean;
 use crate::geom::region::Region;
 use crate::progress::Progress;
 use crate::rng::Rng;
@@ -36,7 +37,7 @@ use artwork::Layers;
 use cells::Cells;
 use clip_art::Library;
 use grow::Plant;
-use kurbo::Point;
+use kurbo::{PathEl, Point};
 use params::Sizes;
 use particle::Charge;
 use rinceau_format::{Artwork, Error, Guide, Scene};
@@ -79,23 +80,31 @@ pub fn generate(
     let stems: Vec<&Guide> =
         scene.stems.iter().chain(scene.guides.iter().filter(|path| !path.marked)).collect();
     let mut used = vec![0.0; stems.len()];
-    for (index, own) in own.iter().enumerate() {
+    let (islands, owners) = islands(scene, shapes, &stems, &own);
+    let mut grown = vec![false; own.len()];
+    for (island, &index) in owners.iter().enumerate() {
+        let areas = islands.areas.iter().zip(&owners).filter(|(_, owner)| **owner == index);
         let mut one = Container {
             scene,
-            shapes: &shapes,
+            shapes: &islands,
+            island,
             index,
+            area: areas.map(|(area, _)| *area).fold(0.0, f64::max),
             library: &library,
             stems: &stems,
             used: &mut used,
             planned: false,
         };
-        match one.grow(own, &mut rng.fork(), &mut layers, &mut counts, progress)? {
-            Some(finished) => complete &= finished,
-            None => warnings.push(format!(
-                "The container '{}' is too small or too thin for anything to grow, or lies under another",
-                scene.containers[index].source.id
-            )),
+        if let Some(finished) = one.grow(&own[index], &mut rng.fork(), &mut layers, &mut counts, progress)? {
+            complete &= finished;
+            grown[index] = true;
         }
+    }
+    for (container, _) in scene.containers.iter().zip(&grown).filter(|(_, grown)| !**grown) {
+        warnings.push(format!(
+            "The container '{}' is too small or too thin for anything to grow, or lies under another",
+            container.source.id
+        ));
     }
     warnings.extend(stems_cut(&stems, &used)?);
     progress.step("artwork", 0.0);
@@ -110,9 +119,34 @@ pub fn generate(
         complete,
         warnings,
         counts,
-        decimals: shapes.decimals(),
+        decimals: islands.decimals(),
         ..Artwork::default()
     })
+}
+
+/// Shapes whose containers are in one piece each, the largest first, and of which container each was: a
+/// vine of its own grows in every letter of a word. A band stays whole, and a container for which the
+/// artist says where stems start.
+fn islands(scene: &Scene, mut shapes: Shapes, stems: &[&Guide], own: &[Params]) -> (Shapes, Vec<usize>) {
+    let mut owners = Vec::new();
+    let mut whole = std::mem::take(&mut shapes.containers);
+    for (index, contours) in whole.iter_mut().enumerate() {
+        let is_planned = Region::new(contours.clone()).is_some_and(|region| {
+            let starts = scene.seeds.iter().map(|seed| seed.at);
+            let ends =
+                stems.iter().flat_map(|stem| stem.path.elements().iter().filter_map(PathEl::end_point));
+            starts.chain(ends).any(|at| region.contains(at))
+        });
+        let mut parts = boolean::parts(std::mem::take(contours));
+        parts.reverse();
+        if parts.len() < 2 || is_planned || own[index].repeat {
+            parts = vec![parts.concat()];
+        }
+        owners.extend(parts.iter().map(|_| index));
+        shapes.containers.extend(parts);
+    }
+    shapes.measure();
+    (shapes, owners)
 }
 
 /// Errors on a seed outside every container.
@@ -164,8 +198,13 @@ fn stems_cut(stems: &[&Guide], used: &[f64]) -> Result<Vec<String>, Error> {
 /// One container of a run.
 struct Container<'a> {
     scene: &'a Scene,
+    /// Containers in one piece each, and which of them this is.
     shapes: &'a Shapes,
+    island: usize,
+    /// Which of the scene's it is, or is a part of.
     index: usize,
+    /// Of its largest part.
+    area: f64,
     library: &'a Library,
     /// Drawn stems.
     stems: &'a [&'a Guide],
@@ -195,7 +234,7 @@ impl Container<'_> {
         progress.step("cells", 0.0);
         let Some(ground) = self.ground() else { return Ok(None) };
         let inradius = ground.inradius;
-        let sizes = Sizes::new(params, self.shapes.areas[self.index], inradius, self.scene.px_per_unit);
+        let sizes = Sizes::new(params, self.area, inradius, self.scene.px_per_unit);
         let Some(cells) = self.cells(params, &sizes) else { return Ok(None) };
         let mut plant =
             Plant::new((params, &sizes), (self.library, &charge), (forks, tips), cells, rng.fork());
@@ -232,16 +271,16 @@ impl Container<'_> {
     /// A few cells, for a first look. `None` if there is no inside.
     fn ground(&self) -> Option<Ground> {
         const CELLS: f64 = 4e4;
-        let region = self.shapes.free(self.index, 0.0, 0.0)?;
+        let region = self.shapes.free(self.island, 0.0, 0.0)?;
         let size = Cells::size_for(region.bounds().area(), 0.0, CELLS);
         Some(Ground::new(Cells::new(&region, size, None))).filter(|ground| ground.inradius > 0.0)
     }
 
     /// The free cells.
     fn cells(&self, params: &Params, sizes: &Sizes) -> Option<Cells> {
-        let (left, width) = self.shapes.span(self.index);
+        let (left, width) = self.shapes.span(self.island);
         let free = if params.repeat { Shapes::free_repeated } else { Shapes::free };
-        let region = free(self.shapes, self.index, sizes.gap, sizes.edge)?;
+        let region = free(self.shapes, self.island, sizes.gap, sizes.edge)?;
         // As fine as the thinnest twig.
         let size = Cells::size_for(width * region.bounds().height(), 0.17 * sizes.width, MOST_CELLS);
         Some(Cells::new(&region, size, params.repeat.then_some((left, width))))
@@ -269,7 +308,7 @@ impl Container<'_> {
         self.planned = !drawn.is_empty() || !seeds.is_empty() || plant.params.stem == "curl";
         if drawn.is_empty() && seeds.is_empty() {
             if repeat {
-                drawn.extend(start::wave(plant, self.shapes.span(self.index), ground.inradius));
+                drawn.extend(start::wave(plant, self.shapes.span(self.island), ground.inradius));
             }
             if drawn.is_empty() {
                 seeds.push(None);
