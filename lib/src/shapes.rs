@@ -48,10 +48,12 @@ impl Shapes {
             containers.push(silhouette(container, tolerance)?);
         }
         // Of overlapping containers the upper one has the common area.
+        let boxes: Vec<Rect> =
+            containers.iter().map(|shape| bounding_box(shape).unwrap_or(Rect::ZERO)).collect();
         for i in 0..containers.len() {
             for j in i + 1..containers.len() {
                 let takes = !overlay.get(j).copied().unwrap_or(false);
-                if takes && may_touch(&containers[i], &containers[j]) {
+                if takes && boxes[i].overlaps(boxes[j]) {
                     containers[i] = boolean::difference(&containers[i], &containers[j]);
                 }
             }
@@ -155,7 +157,7 @@ fn silhouette(container: &Container, tolerance: f64) -> Result<Vec<Contour>, Err
             "Draw a closed shape in it, or clear its mark",
         ));
     }
-    let mut union: Vec<Contour> = Vec::new();
+    let mut all: Vec<Contour> = Vec::new();
     for outline in &container.outlines {
         let mut contours = Vec::new();
         for subpath in flatten(&outline.path, tolerance) {
@@ -172,9 +174,10 @@ fn silhouette(container: &Container, tolerance: f64) -> Result<Vec<Contour>, Err
         for contour in &contours {
             check_crossing(contour, container, tolerance)?;
         }
-        let simple = boolean::simplified(&contours, outline.rule == FillRule::EvenOdd);
-        union = if union.is_empty() { simple } else { boolean::union(&union, &simple) };
+        all.extend(boolean::simplified(&contours, outline.rule == FillRule::EvenOdd));
     }
+    // Outer contours run one way round and holes the other: what any of them covers winds at least once.
+    let union = if container.outlines.len() > 1 { boolean::simplified(&all, false) } else { all };
     let size = container
         .outlines
         .iter()
@@ -219,13 +222,6 @@ fn check_crossing(contour: &Contour, container: &Container, tolerance: f64) -> R
         return Ok(());
     }
     Err(refused)
-}
-
-fn may_touch(a: &[Contour], b: &[Contour]) -> bool {
-    match (bounding_box(a), bounding_box(b)) {
-        (Some(a), Some(b)) => a.overlaps(b),
-        _ => false,
-    }
 }
 
 /// What fixed elements cover, strokes included.
