@@ -78,6 +78,51 @@ pub fn write_by(
     })
 }
 
+/// How much was written.
+#[derive(Clone, Copy, Default)]
+pub struct Size {
+    bytes: usize,
+    tags: usize,
+    /// The last byte opened a tag.
+    opened: bool,
+}
+
+impl Size {
+    /// A sentence if it is more than a drawing may have to be opened again.
+    pub fn warning(self) -> Option<String> {
+        let Limits { bytes, nodes, .. } = Limits::default();
+        let is_large = self.bytes > bytes || self.tags > nodes;
+        is_large.then(|| {
+            format!(
+                "the drawing has {} MB and {} objects now, more than the {} MB and {nodes} objects that can be opened again here; for one that can, take fewer generations or larger elements, or flat paths",
+                self.bytes / 1_000_000, self.tags, bytes / 1_000_000,
+            )
+        })
+    }
+}
+
+/// Counts what it passes on.
+pub struct Counted<'a> {
+    pub out: &'a mut dyn Write,
+    pub size: &'a mut Size,
+}
+
+impl Write for Counted<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.out.write(bytes)?;
+        self.size.bytes += written;
+        for &byte in &bytes[..written] {
+            self.size.tags += usize::from(self.size.opened && byte != b'/');
+            self.size.opened = byte == b'<';
+        }
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
 /// Tells a person at the terminal something, whatever names are in it.
 pub fn note(text: &str) {
     eprintln!("rinceau: note: {}", printable(text));
@@ -161,4 +206,22 @@ fn name(path: Option<&Path>) -> String {
 
 fn reason(error: &io::Error) -> String {
     error.to_string().split(" (os error").next().unwrap_or_default().to_lowercase()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    /// Tags are counted however the pieces fall, and what is too much for opening again is said.
+    #[test]
+    fn sizes_are_counted() {
+        let (mut all, mut size) = (Vec::new(), Size::default());
+        let mut counted = Counted { out: &mut all, size: &mut size };
+        for piece in ["<svg><", "g/", "><g></g", "><", "/svg>"] {
+            counted.write_all(piece.as_bytes()).unwrap();
+        }
+        assert_eq!((all.len(), size.bytes, size.tags), (22, 22, 3));
+        assert_eq!(size.warning(), None);
+        let large = Size { tags: 1_000_001, ..size };
+        assert!(large.warning().is_some_and(|warning| warning.contains("1000001 objects")));
+    }
 }

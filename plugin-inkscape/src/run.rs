@@ -45,9 +45,14 @@ impl Done {
         Ok(json!(rinceau::quality::measure(&self.scene, &self.artwork)?))
     }
 
-    /// Writes the same as it is made.
-    fn write(&self, path: Option<&Path>) -> Result<(), Error> {
-        output::write_by(path, |out| self.document.write_with_layer(&self.artwork, &self.recipe, out))
+    /// Writes the same as it is made; what it measures.
+    fn write(&self, path: Option<&Path>) -> Result<output::Size, Error> {
+        let mut size = output::Size::default();
+        output::write_by(path, |out| {
+            let mut counted = output::Counted { out, size: &mut size };
+            self.document.write_with_layer(&self.artwork, &self.recipe, &mut counted)
+        })?;
+        Ok(size)
     }
 }
 
@@ -241,9 +246,10 @@ fn generator_command(generator: &'static Generator, matches: &ArgMatches) -> Res
         progress: &mut progress,
     })?;
     progress.start("write");
-    done.write(path(matches, "out"))?;
-    for warning in &done.artwork.warnings {
-        output::note(warning);
+    let size = done.write(path(matches, "out"))?;
+    done.artwork.warnings.iter().for_each(|warning| output::note(warning));
+    if let Some(warning) = size.warning() {
+        output::note(&warning);
     }
     if let Some(report) = matches.get_one::<PathBuf>("report") {
         let stages: serde_json::Map<_, _> =
@@ -261,7 +267,14 @@ fn generator_command(generator: &'static Generator, matches: &ArgMatches) -> Res
             "milliseconds": stages,
             "milliseconds_total": total,
         });
-        output::write(Some(report), format!("{report_json:#}\n").as_bytes())?;
+        output::write(Some(report), format!("{report_json:#}\n").as_bytes()).map_err(|error| {
+            let sentence = format!("The report '{}' cannot be written; the drawing was", report.display());
+            Error::new(
+                error.code(),
+                sentence,
+                "Check the report's folder, its permissions and the free space",
+            )
+        })?;
     }
     Ok(())
 }

@@ -754,6 +754,17 @@ mod selection {
         assert!(elements(layers(&xml)[0]).len() > 10);
     }
 
+    /// What is painted inside is a shape, whether or not its ends meet.
+    #[test]
+    fn of_an_open_path_with_a_fill_is_a_shape() {
+        let wing = "<path id=\"wing\" style=\"fill:#222222\" d=\"M20,20 C80,0 150,40 180,120 C120,100 80,120 40,180\"/>";
+        let text = packed_text(svg(wing), &["--id", "wing"]);
+        assert!(elements(layers(&parse(&text))[0]).len() > 10);
+        let line = svg(&wing.replace("#222222", "none"));
+        let failed = rinceau(["pack", "--id", "wing"]).input(line.as_str()).fail();
+        assert!(failed.stderr.contains("[no-container]"), "{}", failed.stderr);
+    }
+
     /// A selected open line leads the flow: along the line most spines run its way.
     #[test]
     fn of_an_open_path_is_a_guide() {

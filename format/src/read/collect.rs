@@ -277,8 +277,13 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
         Ok(())
     }
 
-    /// A selected object without a mark.
-    fn shape(&mut self, done: Collector) {
+    /// A selected object without a mark. What is painted inside is a shape, also if its ends do not meet: its
+    /// fill closes it.
+    fn shape(&mut self, mut done: Collector) {
+        let filled = done.parts.iter_mut();
+        filled
+            .filter(|part| part.style.is_filled() && part.style.get("fill").is_some())
+            .for_each(|part| part.path = closed(std::mem::take(&mut part.path)));
         match &done.parts[..] {
             parts if parts.iter().any(|part| is_closed(&part.path)) => self.container(done),
             [] => {}
@@ -486,6 +491,31 @@ fn root_outline(part: Part) -> Outline {
     let mut path = part.path;
     path.apply_affine(part.transform);
     Outline { path, rule: part.style.fill_rule() }
+}
+
+/// The path with its open subpaths closed, but for straight lines.
+fn closed(path: BezPath) -> BezPath {
+    let mut out = BezPath::new();
+    let mut drawn = 0;
+    let close = |out: &mut BezPath, drawn: usize| {
+        let is_line = drawn == 1 && matches!(out.elements().last(), Some(PathEl::LineTo(_)));
+        if drawn > 0 && !is_line {
+            out.close_path();
+        }
+    };
+    for el in path {
+        match el {
+            PathEl::MoveTo(_) => {
+                close(&mut out, drawn);
+                drawn = 0;
+            }
+            PathEl::ClosePath => drawn = 0,
+            _ => drawn += 1,
+        }
+        out.push(el);
+    }
+    close(&mut out, drawn);
+    out
 }
 
 /// True if the path has a closed subpath: a close command, or ends that meet.

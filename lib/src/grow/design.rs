@@ -71,6 +71,10 @@ impl Design {
         };
         for (index, own) in own.iter().enumerate() {
             let source = &scene.containers[index].source;
+            if !progress.step("space", 0.0) && !design.panels.is_empty() {
+                design.complete = false;
+                break;
+            }
             let mut start = Start { scene, shapes: &shapes, index, params: own, unit: 0.0 };
             let area = shapes.areas[index];
             start.unit = match own.rule_unit.to_user(scene.px_per_unit) {
@@ -203,6 +207,8 @@ impl Design {
         let mut grown = growth::grow(&mut rules, &shared, &settings, progress)?;
         grown.steps += sprouted;
         grown.complete &= is_in_time;
+        // Nothing grows here any more, and of many containers it would be most of the memory.
+        shared.borrow_mut().world().space = Room::none(cell);
         Ok(Some(Panel {
             index,
             rules,

@@ -33,6 +33,11 @@ impl Room {
     /// one that does by less leads growth up to the seam.
     const SEAM: f64 = 7.0;
 
+    /// No room, in cells of a size.
+    pub fn none(cell: f64) -> Self {
+        Self::new(None, Rect::new(0.0, 0.0, cell, cell), cell, &[])
+    }
+
     /// The room in a region, or all over a box, between the images of symmetric growth.
     pub fn new(region: Option<&Region>, bounds: Rect, cell: f64, images: &[Affine]) -> Self {
         let space = |grain: f64, most: f32| {

@@ -81,15 +81,23 @@ pub fn generate(
         scene.stems.iter().chain(scene.guides.iter().filter(|path| !path.marked)).collect();
     let mut used = vec![0.0; stems.len()];
     let (islands, owners) = islands(scene, shapes, &stems, &own);
+    let mut largest = vec![0.0; own.len()];
+    for (&area, &index) in islands.areas.iter().zip(&owners) {
+        largest[index] = f64::max(largest[index], area);
+    }
     let mut grown = vec![false; own.len()];
+    let mut has_ended = false;
     for (island, &index) in owners.iter().enumerate() {
-        let areas = islands.areas.iter().zip(&owners).filter(|(_, owner)| **owner == index);
+        if !progress.step("cells", 0.0) && grown.contains(&true) {
+            (complete, has_ended) = (false, true);
+            break;
+        }
         let mut one = Container {
             scene,
             shapes: &islands,
             island,
             index,
-            area: areas.map(|(area, _)| *area).fold(0.0, f64::max),
+            area: largest[index],
             library: &library,
             stems: &stems,
             used: &mut used,
@@ -100,13 +108,16 @@ pub fn generate(
             grown[index] = true;
         }
     }
-    for (container, _) in scene.containers.iter().zip(&grown).filter(|(_, grown)| !**grown) {
+    let left_out = scene.containers.iter().zip(&grown).filter(|(_, grown)| !has_ended && !**grown);
+    for (container, _) in left_out {
         warnings.push(format!(
             "The container '{}' is too small or too thin for anything to grow, or lies under another",
             container.source.id
         ));
     }
-    warnings.extend(stems_cut(&stems, &used)?);
+    if !has_ended {
+        warnings.extend(stems_cut(&stems, &used)?);
+    }
     progress.step("artwork", 0.0);
     if layers.stems.items.is_empty() {
         let remedy = "Make the stem width or the gap smaller";
