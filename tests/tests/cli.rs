@@ -761,7 +761,8 @@ mod selection {
         let text = packed_text(svg(wing), &["--id", "wing"]);
         assert!(elements(layers(&parse(&text))[0]).len() > 10);
         let line = svg(&wing.replace("#222222", "none"));
-        let failed = rinceau(["pack", "--id", "wing"]).input(line.as_str()).fail();
+        let failed = rinceau(["pack", "--id", "wing"]).input(line.as_str()).done();
+        assert_eq!(failed.code, Some(1));
         assert!(failed.stderr.contains("[no-container]"), "{}", failed.stderr);
     }
 
