@@ -173,7 +173,7 @@ fn flat_drawings_are_paths_in_units_of_the_page() {
     assert_eq!(names, ["path"; 3]);
     let d: Vec<&str> = xml.descendants().filter_map(|node| node.attribute("d")).collect();
     assert_eq!(d, ["M0,0L100,0L100,100L0,100Z", "M60,60L69,63L60,66Z", "M5,5L9,5L9,9Z"]);
-    assert_eq!(notes, ["1 shapes lose their gradient or pattern: paths have none"]);
+    assert_eq!(notes, ["1 shape loses its gradient or pattern: paths have none"]);
     assert_eq!(xml.root_element().attribute("viewBox"), Some("0 0 100 100"));
     let nested = open(
         r#"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><g transform="translate(1 2) scale(2)"><circle r="1" fill-rule="evenodd" stroke="red" stroke-width="0.5"/></g></svg>"#,

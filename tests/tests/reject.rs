@@ -816,3 +816,12 @@ fn entity_bomb() -> String {
 fn numbered(count: usize, template: &str) -> String {
     (0..count).map(|i| template.replace('#', &i.to_string())).collect()
 }
+
+/// Not refused: all of a clipped shape is filled, and that is said.
+#[test]
+fn a_clip_is_told() {
+    let clipped = CIRCLE.replace("/>", " clip-path='url(#half)'/>");
+    let drawing = svg(&format!("<clipPath id='half'><rect width='100' height='200'/></clipPath>{clipped}"));
+    let done = rinceau(["pack"]).input(drawing).succeed();
+    insta::assert_snapshot!(done.stderr.trim(), @"rinceau: note: 2:64: a clip hides some of 'sun', but all of it is filled. To fill what shows alone, make that a shape of its own (Path > Intersection)");
+}

@@ -162,10 +162,10 @@ impl Document {
         if pages > 0 {
             notes.push(format!("{pages} nested pages or symbols no longer cut off what they show"));
         }
-        notes.extend(
-            lost.into_iter()
-                .map(|(what, count)| format!("{count} shapes lose their {what}: paths have none")),
-        );
+        notes.extend(lost.into_iter().map(|(what, count)| {
+            let shapes = if count == 1 { "1 shape loses its" } else { &format!("{count} shapes lose their") };
+            format!("{shapes} {what}: paths have none")
+        }));
         Ok((flat, notes))
     }
 }

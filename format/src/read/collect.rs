@@ -380,6 +380,17 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
             .find(|part| part.style.is_filled())
             .map(|part| part.style.get("fill").unwrap_or("#000000").to_owned());
         let overrides = self.overrides(done.node);
+        let hidden = ["clip", "mask"].into_iter();
+        let hidden: Vec<&str> = hidden
+            .filter(|effect| done.parts.iter().any(|part| part.style.effects().contains(effect)))
+            .collect();
+        if !hidden.is_empty() {
+            let Source { at, id, .. } = &done.source;
+            self.warn(format!(
+                "{at}: a {} hides some of '{id}', but all of it is filled. To fill what shows alone, make that a shape of its own (Path > Intersection)",
+                hidden.join(" and a "),
+            ));
+        }
         let outlines = done.parts.into_iter().map(root_outline).collect();
         self.scene.containers.push(Container { source: done.source, outlines, fill, overrides });
         self.selected_containers.push(done.selected);

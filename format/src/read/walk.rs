@@ -378,7 +378,7 @@ impl<'a, 'i> Walk<'_, 'a, 'i> {
             self.resolver.cascade.computed(span, &place.style, &units).css()
         });
         if paints.any(|paint| paint != place.style.css()) {
-            Rc::make_mut(&mut place.style).add_effect("paint of single words");
+            Rc::make_mut(&mut place.style).add_effect("colours of single words");
         }
         let place = &place;
         self.counts.texts += 1;
