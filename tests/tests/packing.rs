@@ -220,6 +220,34 @@ fn one_connected_piece_is_nowhere_thinner_than_a_bridge() {
     }
 }
 
+/// The one piece of a mirrored layout is its own mirror image, and hangs together in two places at least.
+#[test]
+fn bridges_of_a_mirrored_layout_are_mirrored() {
+    let flags = [
+        ("spacing", "40"),
+        ("connect", "true"),
+        ("bridge", "4"),
+        ("symmetry", "mirror"),
+        ("fillers", "none"),
+    ];
+    let artwork = packed(&heart(), &flags);
+    let piece = simplified(&pieces(&artwork, "piece")[0], false);
+    assert_eq!(piece.iter().filter(|contour| signed_area(contour) > 0.0).count(), 1);
+    let all = bounds(&piece);
+    let axis = all.center().x;
+    let image: Vec<Vec<kurbo::Point>> = piece
+        .iter()
+        .map(|contour| contour.iter().rev().map(|p| kurbo::Point::new(2.0 * axis - p.x, p.y)).collect())
+        .collect();
+    let unlike = area(&difference(&piece, &image));
+    assert!(unlike < 2e-3 * area(&piece), "{unlike} of {}", area(&piece));
+    let strip = |x0: f64, x1: f64| {
+        vec![[(x0, all.y0), (x1, all.y0), (x1, all.y1), (x0, all.y1)].map(Into::into).to_vec()]
+    };
+    let across = intersection(&piece, &strip(axis - 0.05, axis + 0.05));
+    assert_eq!(across.len(), 2, "two bridges over the axis");
+}
+
 #[test]
 fn bridges_go_around_what_is_fixed_if_they_can() {
     let in_heart = |fixed: &str| {

@@ -22,13 +22,13 @@ const JOINED: [&str; 3] = ["elements", "fillers", "negative"];
 
 /// Joins all that an artwork draws to one piece, in a sublayer of its own in their place. `width` is that of
 /// bridges, `fixed` what they keep clear of, `tone` the colour of the piece. False, and nothing changed, if the
-/// time ran out first.
+/// time ran out first. What is drawn in mirrored halves has mirrored bridges.
 ///
 /// Errors: nothing is as thick as a bridge.
 pub(super) fn join(
     artwork: &mut Artwork,
     fixed: &[Contour],
-    (width, tolerance): (f64, f64),
+    ((width, tolerance), mirror): ((f64, f64), Option<Affine>),
     tone: &str,
     mut go_on: impl FnMut(f64) -> bool,
 ) -> Result<bool, Error> {
@@ -78,7 +78,11 @@ pub(super) fn join(
             !is_clear
         })
     };
-    let (bridges, crossing) = bridges(&cores, (0.5 * width).max(4.0 * tolerance), crosses);
+    let step = (0.5 * width).max(4.0 * tolerance);
+    let (bridges, crossing) = match mirror {
+        Some(mirror) => mirrored_bridges(&cores, step, crosses, mirror),
+        None => bridges(&cores, step, crosses),
+    };
     let path = united(&cores, &bridges, radius, tolerance);
     let part = Part { path, transform: Affine::IDENTITY, style: Style::filled(tone) };
     artwork.groups.retain(|group| !is_joined(&group));
@@ -164,6 +168,39 @@ fn bridges(
     bridges.extend(across.map(|&(_, a, b)| nearest(&cores[of[a]], &cores[of[b]], samples[b])));
     let crossing = bridges.len() - clear;
     (bridges, crossing)
+}
+
+/// Bridges in one half, their images in the other, and two across the axis, each its own image: halves that
+/// hang together in one place would swing.
+fn mirrored_bridges(
+    cores: &[Vec<Contour>],
+    step: f64,
+    crosses: impl Fn([Point; 2]) -> bool,
+    mirror: Affine,
+) -> (Vec<[Point; 2]>, usize) {
+    let to_image = |p: Point| mirror * p - p;
+    let image = |[p, q]: [Point; 2]| [mirror * p, mirror * q];
+    let Some(&first) = cores.iter().flatten().flatten().next() else { return (Vec::new(), 0) };
+    let is_here = |core: &&Vec<Contour>| to_image(core[0][0]).dot(to_image(first)) > 0.0;
+    let half: Vec<Vec<Contour>> = cores.iter().filter(is_here).cloned().collect();
+    let (mut bridges, crossing) = bridges(&half, step, |bridge| crosses(bridge) || crosses(image(bridge)));
+    let images: Vec<[Point; 2]> = bridges.iter().map(|&bridge| image(bridge)).collect();
+    bridges.extend(images);
+    // Where each comes nearest to the axis.
+    let near = |a: &&Point, b: &&Point| to_image(**a).hypot2().total_cmp(&to_image(**b).hypot2());
+    let mut over: Vec<[Point; 2]> =
+        half.iter().filter_map(|core| core.iter().flatten().min_by(near)).map(|&p| [p, mirror * p]).collect();
+    over.sort_by(|a, b| a[0].distance_squared(a[1]).total_cmp(&b[0].distance_squared(b[1])));
+    let length = |bridge: &[Point; 2]| bridge[0].distance(bridge[1]);
+    let mut clear = over.iter().filter(|&&bridge| !crosses(bridge));
+    let shortest = clear.next();
+    bridges.extend(shortest.or(over.first()));
+    if let Some(one) = shortest {
+        let short = clear.take_while(|bridge| length(bridge) <= 2.0 * length(one));
+        let from_it = |bridge: &[Point; 2]| bridge[0].distance_squared(one[0]);
+        bridges.extend(short.max_by(|a, b| from_it(a).total_cmp(&from_it(b))));
+    }
+    (bridges, 2 * crossing + usize::from(shortest.is_none()))
 }
 
 /// The nearest places of two cores, from a place on the second that is nearly one of them.

@@ -120,7 +120,9 @@ pub fn generate(
     if let Some(first) = prepared.fields.first().filter(|field| field.params.connect) {
         let tone = palette(&first.params.palette, scene.containers[first.container].fill.as_deref())[0];
         let step = |done| progress.step("connect", done);
-        let sizes = (first.sizes.bridge, first.sizes.tolerance());
+        // Of several containers each may have an axis of its own.
+        let mirror = first.mirror.filter(|_| prepared.fields.len() == 1);
+        let sizes = ((first.sizes.bridge, first.sizes.tolerance()), mirror);
         if !connect::join(&mut artwork, &prepared.fixed, sizes, tone, step)? {
             artwork.complete = false;
             let late = "The time ran out before all was joined to one piece; give it more (--time-limit)";
