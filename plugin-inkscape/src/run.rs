@@ -225,7 +225,14 @@ fn generator_command(generator: &'static Generator, matches: &ArgMatches) -> Res
             values.set(generator.table, spec.name, value)?;
         }
     }
-    if let Some(report) = matches.get_one::<PathBuf>("report") {
+    let report = matches.get_one::<PathBuf>("report");
+    // As everywhere a dash is standard output, unless the drawing goes there.
+    let is_printed = report.is_some_and(|report| report == Path::new("-"));
+    if is_printed && path(matches, "out").is_none() {
+        let sentence = "The drawing goes to standard output, and so would the report";
+        return Err(Error::new("bad-parameter", sentence, "Give --report or -o a file"));
+    }
+    if let Some(report) = report.filter(|_| !is_printed) {
         check_report(report, [input(matches), path(matches, "out")])?;
     }
     let seed = *matches.get_one::<u64>("seed").unwrap_or(&1);
@@ -251,7 +258,7 @@ fn generator_command(generator: &'static Generator, matches: &ArgMatches) -> Res
     if let Some(warning) = size.warning() {
         output::note(&warning);
     }
-    if let Some(report) = matches.get_one::<PathBuf>("report") {
+    if let Some(report) = report {
         let stages: serde_json::Map<_, _> =
             progress.stages().iter().map(|(name, ms)| ((*name).to_owned(), json!(ms))).collect();
         // The clock stops before the measuring, which is no part of the work.
@@ -267,7 +274,8 @@ fn generator_command(generator: &'static Generator, matches: &ArgMatches) -> Res
             "milliseconds": stages,
             "milliseconds_total": total,
         });
-        output::write(Some(report), format!("{report_json:#}\n").as_bytes()).map_err(|error| {
+        let report_path = Some(report.as_path()).filter(|_| !is_printed);
+        output::write(report_path, format!("{report_json:#}\n").as_bytes()).map_err(|error| {
             let sentence = format!("The report '{}' cannot be written; the drawing was", report.display());
             Error::new(
                 error.code(),

@@ -647,6 +647,20 @@ mod report {
     use super::*;
     use serde_json::Value;
 
+    /// A dash is standard output, as for drawings, but not for both of them.
+    #[test]
+    fn goes_to_standard_output_for_a_dash() {
+        let folder = folder();
+        let out = folder.path().join("out.svg");
+        let done = rinceau(["pack", "--report", "-", "-o"]).arg(&out).input(svg(CIRCLE)).succeed();
+        let report: Value = serde_json::from_str(done.text()).unwrap();
+        assert_eq!(report["generator"], "pack");
+        assert!(out.exists() && !std::path::Path::new("-").exists());
+        let both = rinceau(["pack", "--report", "-"]).input(svg(CIRCLE)).done();
+        assert_eq!((both.code, both.text()), (Some(1), ""));
+        assert!(both.stderr.contains("[bad-parameter]"), "{}", both.stderr);
+    }
+
     fn report(flags: &[&str]) -> (Value, String) {
         let folder = folder();
         let path = folder.path().join("report.json");

@@ -41,6 +41,16 @@ fn follows_changed_shapes() {
     assert!(updated == run(&["recurse", "--id", "tree", "--depth", "4"], &vine));
 }
 
+/// A record that does not fit its layer is none: nothing is kept twice, and no two objects have one id.
+#[test]
+fn takes_a_record_of_something_else_for_none() {
+    let text = ornamented();
+    let start = text.find("rinceau:pieces=\"").unwrap() + "rinceau:pieces=\"".len();
+    let end = start + text[start..].find('"').unwrap();
+    let broken = format!("{}ffffffffffff 1 2 3{}", &text[..start], &text[end..]);
+    assert!(run(&["update"], &broken) == text);
+}
+
 /// What an artist set on a layer stays.
 #[test]
 fn keeps_the_layer() {

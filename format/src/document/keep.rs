@@ -78,7 +78,21 @@ impl<'a, 'i> Content<'a, 'i> {
         let id = layer.plain("id").unwrap_or("");
         let mut content = Content { layer, id, groups, pieces: HashMap::new(), foreign: Vec::new() };
         content.look(layer, None, false);
+        // A record of another layer, or a damaged one, is none: by it most pieces would be the artist's own,
+        // and stay under the new ones.
+        let strays = content.foreign.iter().filter(|foreign| content.is_numbered(foreign.node)).count();
+        if strays > content.pieces.len() {
+            content = Content { layer, id, groups: Vec::new(), pieces: HashMap::new(), foreign: Vec::new() };
+            content.look(layer, None, false);
+        }
         content
+    }
+
+    /// True for an object that is called like a piece.
+    fn is_numbered(&self, node: Node<'a, 'i>) -> bool {
+        let is_number = |number: &str| number.parse::<usize>().is_ok();
+        let named = self.own(node).rsplit_once('-').filter(|(_, number)| is_number(number));
+        named.is_some_and(|(name, _)| self.groups.iter().any(|made| made.name == name))
     }
 
     /// Finds pieces, and what is none, below a node of the layer.

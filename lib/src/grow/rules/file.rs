@@ -302,11 +302,12 @@ impl<'t> Reader<'_, 't> {
     fn kind(&mut self, what: &str) -> Result<usize, Error> {
         let name = self.name(what)?;
         self.names.iter().position(|known| known == name.text).ok_or_else(|| {
-            self.source.error(
-                name.at,
-                format!("no element type is called '{}'", name.text),
-                format!("Declare it, or use one of {}", self.names.join(", ")),
-            )
+            let sentence = format!("no element type is called '{}'", name.text);
+            let remedy = match &self.names[..] {
+                [] => "Declare it before, or look for a word that is not spelled right".to_owned(),
+                names => format!("Declare it, or use one of {}", names.join(", ")),
+            };
+            self.source.error(name.at, sentence, remedy)
         })
     }
 
