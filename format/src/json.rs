@@ -135,11 +135,10 @@ fn hollow(scene: &mut Scene) -> Option<String> {
     if let Some(id) = twice {
         return Some(format!("Two objects of it have the id '{id}'"));
     }
-    let containers = scene.containers.iter().map(|one| (&one.source, one.outlines.is_empty()));
     let elements = scene.elements.iter().map(|one| (&one.source, one.template.parts.is_empty()));
     let examples = scene.references.iter().flat_map(|one| &one.examples);
     let examples = examples.map(|one| (&one.source, one.parts.is_empty()));
-    let mut all = containers.chain(elements).chain(examples);
+    let mut all = elements.chain(examples);
     let (source, _) = all.find(|(_, is_empty)| *is_empty)?;
     Some(format!("'{}' has nothing in it", source.id))
 }
