@@ -76,6 +76,7 @@ pub fn generate(job: Job) -> Result<Done, Error> {
         // An ornament that has not changed stays the same around what the artist moved.
         if !document.is_made_of(&artwork, job.generator.name, &ids)? {
             let mut scene = held.document.scene(&selection)?;
+            held.fill_holes(&mut scene);
             add_rules(&mut scene, job.generator, &job.values)?;
             job.progress.limit(job.time_limit);
             let progress = job.progress.as_progress();

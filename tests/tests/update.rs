@@ -2,6 +2,7 @@
 
 mod support;
 
+use kurbo::{Affine, BezPath, PathEl, Point, Shape};
 use support::{INKSCAPE, RINCEAU, by_id, layers, parse, rinceau, svg};
 
 const SHAPES: &str = "<rect id=\"panel\" x=\"10\" y=\"10\" width=\"90\" height=\"60\"/>\n<path id=\"way\" d=\"M15,60 L95,20\" fill=\"none\"/>\n<g id=\"tree\"><path id=\"trunk\" d=\"M150,190 V150\" stroke=\"#000000\"/><use href=\"#trunk\" transform=\"translate(150 150) rotate(30) scale(.7) translate(-150 -190)\"/></g>";
@@ -261,4 +262,50 @@ fn tells_a_moved_ornament_from_moved_pieces() {
     }
     let tag = |text: &str| text.matches("rinceau:of").count();
     assert_eq!(tag(&run(&["update"], &emptied)), tag(&made));
+}
+
+/// What can be seen through a piece that the artist moved is no room for fillers.
+#[test]
+fn leaves_the_holes_of_a_moved_piece_empty() {
+    let sun = svg("<circle id=\"sun\" cx=\"100\" cy=\"100\" r=\"90\"/>");
+    let flags = ["pack", "--id", "sun", "--elements", "pea-pod", "--spacing", "45", "--min-gap", "1"];
+    let packed = run(&flags, &sun);
+    let id = "id=\"ornament-sun-elements-8\"";
+    let moved = changed(&packed, id, &format!("{id} transform=\"translate(2 3)\""));
+    let again = run(&[&flags[..], &["--seed", "2"]].concat(), &moved);
+    let xml = parse(&again);
+    let piece =
+        xml.descendants().find(|node| node.attribute("id") == Some("ornament-sun-elements-8")).unwrap();
+    assert_eq!(piece.attribute("transform"), Some("translate(2 3)"), "it stays where it is");
+    let outlines: Vec<BezPath> = piece
+        .descendants()
+        .filter_map(|node| node.attribute("d"))
+        .map(|data| Affine::translate((2.0, 3.0)) * BezPath::from_svg(data).unwrap())
+        .collect();
+    let holes: usize = outlines.iter().map(|path| subpaths(path).len() - 1).sum();
+    assert!(holes > 1, "{holes}");
+    let inside = |at: Point| outlines.iter().flat_map(subpaths).any(|subpath| subpath.winding(at) != 0);
+    let is_filler = |node: &roxmltree::Node| {
+        node.attribute("id").is_some_and(|id| id.starts_with("ornament-sun-fillers-"))
+    };
+    let fillers: Vec<Point> = xml
+        .descendants()
+        .filter(is_filler)
+        .filter_map(|node| node.attribute("d"))
+        .flat_map(|data| subpaths(&BezPath::from_svg(data).unwrap()))
+        .map(|dot| dot.bounding_box().center())
+        .collect();
+    assert!(fillers.len() > 5, "{}", fillers.len());
+    assert!(!fillers.into_iter().any(inside));
+}
+
+fn subpaths(path: &BezPath) -> Vec<BezPath> {
+    let mut all: Vec<BezPath> = Vec::new();
+    for &el in path.elements() {
+        if matches!(el, PathEl::MoveTo(_)) {
+            all.push(BezPath::new());
+        }
+        all.last_mut().unwrap().push(el);
+    }
+    all
 }
