@@ -145,8 +145,22 @@ impl Placement {
                     goes.then_some((i, candidate))
                 })
             };
-            let firsts: Vec<_> = ahead.par_iter().map(|body| from(self, body, 0)).collect();
+            // The time is asked for more often than that: elements may be of very many shapes.
+            const AT_ONCE: usize = 8;
+            let mut firsts: Vec<_> = Vec::with_capacity(ahead.len());
+            let mut is_late = false;
+            for some in ahead.chunks(AT_ONCE) {
+                firsts.par_extend(some.par_iter().map(|body| from(self, body, 0)));
+                is_late = !go_on(round as f64 / rounds as f64);
+                if is_late {
+                    break;
+                }
+            }
             for (body, first) in ahead.into_iter().zip(firsts) {
+                if is_late && !self.placed.is_empty() {
+                    return false;
+                }
+                is_late |= !go_on(round as f64 / rounds as f64);
                 let settled = first.and_then(|(i, candidate)| {
                     // It has been checked against the rest already.
                     let field = context(body).1;
