@@ -52,7 +52,7 @@ pub use scene::{
     Container, Element, Example, Fixed, Form, FormItem, Guide, Live, Outline, Primitive, Reference,
     Replication, RuleSet, Scene, Seed, Selection, Source, Stroke, Template, When,
 };
-pub use shape::arc_to_cubics;
+pub use shape::{arc_to_cubics, subpaths};
 pub use style::{FillRule, Style, rgb};
 pub use text::generic_fonts;
 pub use units::Length;

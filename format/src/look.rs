@@ -14,7 +14,8 @@ pub(crate) fn appearance(role: Role) -> &'static [(&'static str, &'static str)] 
         Role::FixedSpine => &[("fill", "none"), ("stroke", "#00aa00")],
         Role::Seed | Role::Tack => &[("fill", "#ff7f00")],
         Role::Spray => &[("fill", "none"), ("stroke-opacity", "0.3")],
-        // What is fixed is part of the picture.
+        // What is fixed is part of the picture: it is green in diagrams alone (F-011), or eyes would come out
+        // green.
         Role::Fixed | Role::Element | Role::Form | Role::Clone | Role::Reference | Role::Rules => &[],
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::units::{Axis, Units};
 use crate::xml::PlainAttribute;
-use kurbo::{BezPath, PathEl, Point, Vec2};
+use kurbo::{BezPath, ParamCurve, PathEl, Point, Shape, Vec2};
 use roxmltree::Node;
 use std::f64::consts::{FRAC_PI_2, PI};
 use svgtypes::PathSegment;
@@ -48,6 +48,46 @@ pub(crate) fn outline(node: Node, units: &Units) -> Result<BezPath, String> {
         "polygon" => poly(node.plain("points").unwrap_or(""), true),
         _ => Ok(BezPath::new()),
     }
+}
+
+/// The subpaths of a path, each a path of its own.
+pub fn subpaths(path: &BezPath) -> Vec<BezPath> {
+    let mut subpaths: Vec<BezPath> = Vec::new();
+    for el in path.elements() {
+        if matches!(el, PathEl::MoveTo(_)) || subpaths.is_empty() {
+            subpaths.push(BezPath::new());
+        }
+        if let Some(last) = subpaths.last_mut() {
+            last.push(*el);
+        }
+    }
+    subpaths
+}
+
+/// The path with its open subpaths closed, but for straight lines.
+pub(crate) fn closed(path: &BezPath) -> BezPath {
+    let mut out = BezPath::new();
+    for subpath in subpaths(path) {
+        let is_open = match subpath.elements() {
+            [_] | [_, PathEl::LineTo(_)] => false,
+            elements => !matches!(elements.last(), Some(PathEl::ClosePath)),
+        };
+        out.extend(subpath);
+        if is_open {
+            out.close_path();
+        }
+    }
+    out
+}
+
+/// True if the path has a closed subpath: a close command, or ends that meet.
+pub(crate) fn is_closed(path: &BezPath) -> bool {
+    if path.elements().iter().any(|el| matches!(el, PathEl::ClosePath)) {
+        return true;
+    }
+    let (Some(first), Some(last)) = (path.segments().next(), path.segments().last()) else { return false };
+    first.start().distance(last.end()) <= 1e-6 * path.bounding_box().size().max_side()
+        && path.segments().count() > 1
 }
 
 /// The points of a path command, with its handles.

@@ -48,23 +48,22 @@ pub fn palette(name: &str, container_fill: Option<&str>) -> [&'static str; 3] {
     tones(clear.or_else(clearest).copied().unwrap_or("lagoon"))
 }
 
-/// How unlike two colours look: the distance in Oklab (Ottosson 2020).
+/// How unlike two colours look: the distance in Oklab.
 fn distance(a: [u8; 3], b: [u8; 3]) -> f64 {
     let (a, b) = (oklab(a), oklab(b));
     (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
 }
 
-fn oklab(colour: [u8; 3]) -> [f64; 3] {
-    let [r, g, b] = colour.map(|c| {
-        let c = f64::from(c) / 255.0;
-        if c <= 0.04045 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
-    });
-    let [l, m, s] = [
-        0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b,
-        0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b,
-        0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b,
-    ]
-    .map(libm::cbrt);
+/// A colour in Oklab, where distances are as the eye has them (Björn Ottosson 2020).
+pub fn oklab(rgb: [u8; 3]) -> [f64; 3] {
+    let linear = |byte: u8| {
+        let c = f64::from(byte) / 255.0;
+        if c <= 0.040_45 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
+    };
+    let [r, g, b] = rgb.map(linear);
+    let l = libm::cbrt(0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b);
+    let m = libm::cbrt(0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b);
+    let s = libm::cbrt(0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b);
     [
         0.210_454_255_3 * l + 0.793_617_785_0 * m - 0.004_072_046_8 * s,
         1.977_998_495_1 * l - 2.428_592_205_0 * m + 0.450_593_709_9 * s,

@@ -64,8 +64,25 @@ impl Shapes {
         Ok(shapes)
     }
 
-    /// Takes the areas of containers that have changed.
-    pub fn measure(&mut self) {
+    /// Takes containers apart that are in several pieces, the largest first, but for those that `is_whole`
+    /// says; of which container each is.
+    pub fn take_apart(&mut self, is_whole: impl Fn(usize, &[Contour]) -> bool) -> Vec<usize> {
+        let mut owners = Vec::new();
+        for (index, contours) in std::mem::take(&mut self.containers).into_iter().enumerate() {
+            let pieces = match is_whole(index, &contours) {
+                true => vec![contours],
+                false => boolean::parts(contours),
+            };
+            owners.extend(pieces.iter().map(|_| index));
+            self.containers.extend(pieces.into_iter().rev());
+        }
+        if owners.len() > self.areas.len() {
+            self.measure();
+        }
+        owners
+    }
+
+    fn measure(&mut self) {
         let free = |shape: &Vec<Contour>| boolean::difference(shape, &near(&self.fixed, shape, 0.0));
         self.areas = self.containers.iter().map(|shape| boolean::area(&free(shape))).collect();
     }

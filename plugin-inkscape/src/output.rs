@@ -211,6 +211,7 @@ fn reason(error: &io::Error) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
     /// Tags are counted however the pieces fall, and what is too much for opening again is said.
     #[test]
     fn sizes_are_counted() {

@@ -75,8 +75,7 @@ pub fn generate(job: Job) -> Result<Done, Error> {
     if let Some(held) = document.held(job.generator.name, &ids)? {
         // An ornament that has not changed stays the same around what the artist moved.
         if !document.is_made_of(&artwork, job.generator.name, &ids)? {
-            let mut scene = held.document.scene(&selection)?;
-            held.fill_holes(&mut scene);
+            let mut scene = held.scene(&selection)?;
             add_rules(&mut scene, job.generator, &job.values)?;
             job.progress.limit(job.time_limit);
             let progress = job.progress.as_progress();

@@ -530,6 +530,19 @@ mod marks {
         assert!(!cleared.contains("rinceau-arrow") && !cleared.contains("own-style"));
     }
 
+    /// A guide that was red before it was marked keeps its arrow head when the mark is cleared.
+    #[test]
+    fn without_a_style_kept_leave_the_arrow_on() {
+        let marked = marked(&svg("<path id=\"it\" style=\"fill:none\" d=\"M0,0 H90\"/>"), "guide");
+        let start = marked.find(" rinceau:own-style").unwrap();
+        let end = start + marked[start..].find("\"fill:none\"").unwrap() + "\"fill:none\"".len();
+        let old = format!("{}{}", &marked[..start], &marked[end..]);
+        let cleared = self::marked(&old, "none");
+        let xml = parse(&cleared);
+        assert!(by_id(&xml, "it").attribute("style").unwrap().contains("#rinceau-arrow"));
+        assert_eq!(by_id(&xml, "rinceau-arrow").tag_name().name(), "marker");
+    }
+
     /// One role after the other: the last counts, and no trace of the first stays.
     #[test]
     fn replace_each_other() {

@@ -2,6 +2,7 @@
 
 use super::Document;
 use super::edit::{splice, start_tag_end, tag_name};
+use crate::css::declarations;
 use crate::error::Error;
 use crate::look::{self, ARROW, appearance};
 use crate::read::{Resolver, unknown_id};
@@ -9,6 +10,7 @@ use crate::vocabulary::{NAMESPACE, OWN_STYLE, Role};
 use crate::write::{attribute, escaped};
 use crate::xml::PlainAttribute;
 use roxmltree::Node;
+use simplecss::Declaration;
 use std::ops::Range;
 
 impl Document {
@@ -32,7 +34,11 @@ impl Document {
             for &node in &nodes {
                 let now = node.plain("style").unwrap_or("");
                 let kept = node.attribute((NAMESPACE, OWN_STYLE));
-                let own = kept.map_or_else(|| now.to_owned(), |own| unmarked_style(now, own));
+                let marked = node.attribute((NAMESPACE, "role")).and_then(Role::from_name);
+                let own = match (kept, marked) {
+                    (Some(own), Some(role)) => unmarked_style(now, own, role),
+                    _ => now.to_owned(),
+                };
                 let look = match role {
                     Some(role) => {
                         let style = marked_style(&own, role);
@@ -43,6 +49,8 @@ impl Document {
                 };
                 self.put_role(node, role, &prefix, look, &mut edits)?;
             }
+            // A mark without a style kept beside it leaves its arrow head on when it is cleared.
+            nodes.retain(|node| role.is_some() || node.has_attribute((NAMESPACE, OWN_STYLE)));
             let has_arrow = resolver.by_id(ARROW, None)?.is_some();
             if role == Some(Role::Guide) && !has_arrow {
                 edits.extend(self.arrow(xml));
@@ -171,30 +179,25 @@ pub(super) struct Look {
     own: Option<String>,
 }
 
-/// The style that an object has without its mark: its own, with what was changed since it was marked.
-fn unmarked_style(now: &str, own: &str) -> String {
-    let is_marks = |name: &str, value: &str| {
-        Role::ALL.iter().flat_map(|&role| appearance(role)).any(|&(n, v)| n == name && v == value)
-            || name == "marker-end" && value.contains(ARROW)
+/// The style that an object has without its mark of a role: its own, with what was changed since then.
+fn unmarked_style(now: &str, own: &str, role: Role) -> String {
+    let is_marks = |d: &Declaration| {
+        appearance(role).contains(&(d.name, d.value)) || d.name == "marker-end" && d.value.contains(ARROW)
     };
-    let changed = crate::css::declarations(now).filter(|d| !is_marks(d.name, d.value));
-    let text = |d: &simplecss::Declaration| {
-        format!("{}:{}{}", d.name, d.value, if d.important { " !important" } else { "" })
-    };
-    let mut changed: Vec<(&str, String)> = changed.map(|d| (d.name, text(&d))).collect();
-    let before: Vec<(&str, String)> = crate::css::declarations(own).map(|d| (d.name, text(&d))).collect();
+    let before: Vec<Declaration> = declarations(own).collect();
+    let mut after: Vec<Declaration> = declarations(now).filter(|d| !is_marks(d)).collect();
     // What the mark hid, and nothing was put in place of.
-    let hidden = before.iter().filter(|(name, _)| !changed.iter().any(|(other, _)| other == name));
-    let hidden: Vec<(&str, String)> = hidden.cloned().collect();
-    changed.extend(hidden);
-    let sorted = |list: &[(&str, String)]| {
-        let mut all: Vec<String> = list.iter().map(|(_, text)| text.clone()).collect();
+    let hidden = before.iter().filter(|hidden| !after.iter().any(|d| d.name == hidden.name));
+    let hidden: Vec<Declaration> = hidden.copied().collect();
+    after.extend(hidden);
+    let sorted = |list: &[Declaration]| {
+        let mut all: Vec<String> = list.iter().map(declared).collect();
         all.sort_unstable();
         all
     };
-    match sorted(&changed) == sorted(&before) {
+    match sorted(&after) == sorted(&before) {
         true => own.to_owned(),
-        false => changed.into_iter().map(|(_, text)| text).collect::<Vec<_>>().join(";"),
+        false => after.iter().map(declared).collect::<Vec<_>>().join(";"),
     }
 }
 
@@ -202,16 +205,20 @@ fn unmarked_style(now: &str, own: &str) -> String {
 /// the mark that it belongs to.
 fn marked_style(style: &str, role: Role) -> String {
     let colours = appearance(role);
-    let mut out: Vec<String> = crate::css::declarations(style)
+    let mut out: Vec<String> = declarations(style)
         .filter(|d| {
             !colours.iter().any(|(name, _)| *name == d.name)
                 && !(d.name == "marker-end" && (role == Role::Guide || d.value.contains(ARROW)))
         })
-        .map(|d| format!("{}:{}{}", d.name, d.value, if d.important { " !important" } else { "" }))
+        .map(|d| declared(&d))
         .collect();
     out.extend(colours.iter().map(|(name, value)| format!("{name}:{value}")));
     if role == Role::Guide {
         out.push(format!("marker-end:url(#{ARROW})"));
     }
     out.join(";")
+}
+
+fn declared(d: &Declaration) -> String {
+    format!("{}:{}{}", d.name, d.value, if d.important { " !important" } else { "" })
 }

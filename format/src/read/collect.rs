@@ -10,10 +10,10 @@ use crate::scene::{
     Container, Element, Example, Fixed, Guide, Live, Outline, Primitive, Reference, Scene, Seed, Source,
     Stroke, Template, When,
 };
-use crate::shape::points_of;
+use crate::shape::{closed, is_closed, points_of};
 use crate::units::mean_scale;
 use crate::vocabulary::{INKSCAPE, NAMESPACE, OWN_STYLE, Role};
-use kurbo::{Affine, BezPath, ParamCurve, PathEl, Point, Rect, Shape};
+use kurbo::{Affine, BezPath, ParamCurve, Point, Rect, Shape};
 use roxmltree::{Node, NodeId};
 use std::collections::{BTreeMap, HashMap};
 
@@ -283,7 +283,7 @@ impl<'r, 'a, 'i> Gathering<'r, 'a, 'i> {
         let filled = done.parts.iter_mut();
         filled
             .filter(|part| part.style.is_filled() && part.style.get("fill").is_some())
-            .for_each(|part| part.path = closed(std::mem::take(&mut part.path)));
+            .for_each(|part| part.path = closed(&part.path));
         match &done.parts[..] {
             parts if parts.iter().any(|part| is_closed(&part.path)) => self.container(done),
             [] => {}
@@ -502,39 +502,4 @@ fn root_outline(part: Part) -> Outline {
     let mut path = part.path;
     path.apply_affine(part.transform);
     Outline { path, rule: part.style.fill_rule() }
-}
-
-/// The path with its open subpaths closed, but for straight lines.
-fn closed(path: BezPath) -> BezPath {
-    let mut out = BezPath::new();
-    let mut drawn = 0;
-    let close = |out: &mut BezPath, drawn: usize| {
-        let is_line = drawn == 1 && matches!(out.elements().last(), Some(PathEl::LineTo(_)));
-        if drawn > 0 && !is_line {
-            out.close_path();
-        }
-    };
-    for el in path {
-        match el {
-            PathEl::MoveTo(_) => {
-                close(&mut out, drawn);
-                drawn = 0;
-            }
-            PathEl::ClosePath => drawn = 0,
-            _ => drawn += 1,
-        }
-        out.push(el);
-    }
-    close(&mut out, drawn);
-    out
-}
-
-/// True if the path has a closed subpath: a close command, or ends that meet.
-fn is_closed(path: &BezPath) -> bool {
-    if path.elements().iter().any(|el| matches!(el, PathEl::ClosePath)) {
-        return true;
-    }
-    let (Some(first), Some(last)) = (path.segments().next(), path.segments().last()) else { return false };
-    first.start().distance(last.end()) <= 1e-6 * path.bounding_box().size().max_side()
-        && path.segments().count() > 1
 }

@@ -10,7 +10,7 @@ use super::choose::{Pose, extent, fit};
 use super::params::Sizes;
 use super::prepare::{Field, Prepared};
 use super::refine::Body;
-use super::template::{BINS, Template, subpaths};
+use super::template::{BINS, Template};
 use crate::field::LineKind;
 use crate::geom::bend::Bend;
 use crate::geom::boolean::{Contour, area, encloses, is_outer, simplified};
@@ -21,6 +21,7 @@ use crate::geom::region::Region;
 use crate::geom::segment::{SegmentGrid, crosses, segment_segment};
 use kurbo::{Affine, BezPath, Point, Rect};
 use rayon::prelude::*;
+use rinceau_format::subpaths;
 
 /// Widths, and shares of the length given up at both ends, tried one after the other until
 /// the outline keeps its distances. What is in the way is mostly ahead of a tip.

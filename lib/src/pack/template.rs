@@ -5,8 +5,8 @@ use crate::geom::distance::{covered, passed, squared_distances};
 use crate::geom::flatten::flatten;
 use crate::geom::polyline::{self, left_of};
 use crate::geom::region::Region;
-use kurbo::{Affine, BezPath, PathEl, Point, Rect};
-use rinceau_format::{Element, Error, Part, Source, Style};
+use kurbo::{Affine, BezPath, Point, Rect};
+use rinceau_format::{Element, Error, Part, Source, Style, subpaths};
 
 /// Bins of an LR function. The paper samples it at n = 100 places (4.2); a bin here holds the
 /// largest extent anywhere in it, so that fewer miss nothing, and every step is linear in them.
@@ -187,20 +187,6 @@ fn blank(subpaths: &[BezPath], is_outer: &[bool], half_width: f64) -> f64 {
     let largest =
         distances.iter().zip(inside).filter(|(_, inside)| *inside).map(|(d, _)| *d).fold(0.0, f64::max);
     largest.sqrt() * cell / half_width
-}
-
-/// The subpaths of a path, each a path of its own.
-pub(super) fn subpaths(path: &BezPath) -> Vec<BezPath> {
-    let mut subpaths: Vec<BezPath> = Vec::new();
-    for el in path.elements() {
-        if matches!(el, PathEl::MoveTo(_)) || subpaths.is_empty() {
-            subpaths.push(BezPath::new());
-        }
-        if let Some(last) = subpaths.last_mut() {
-            last.push(*el);
-        }
-    }
-    subpaths
 }
 
 /// Which subpaths have an outline that does not lie inside that of another.

@@ -1,5 +1,6 @@
 //! Colours over generations.
 
+use crate::palette::oklab;
 use rinceau_format::{Error, Style, rgb};
 
 /// Colours from the first generation to the last, in Oklab (Björn Ottosson 2020), where the way
@@ -49,22 +50,6 @@ impl Ramp {
             style.set("stroke", &colour);
         }
     }
-}
-
-fn oklab(rgb: [u8; 3]) -> [f64; 3] {
-    let linear = |byte: u8| {
-        let c = f64::from(byte) / 255.0;
-        if c <= 0.040_45 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
-    };
-    let [r, g, b] = rgb.map(linear);
-    let l = libm::cbrt(0.412_221_470_8 * r + 0.536_332_536_3 * g + 0.051_445_992_9 * b);
-    let m = libm::cbrt(0.211_903_498_2 * r + 0.680_699_545_1 * g + 0.107_396_956_6 * b);
-    let s = libm::cbrt(0.088_302_461_9 * r + 0.281_718_837_6 * g + 0.629_978_700_5 * b);
-    [
-        0.210_454_255_3 * l + 0.793_617_785_0 * m - 0.004_072_046_8 * s,
-        1.977_998_495_1 * l - 2.428_592_205_0 * m + 0.450_593_709_9 * s,
-        0.025_904_037_1 * l + 0.782_771_766_2 * m - 0.808_675_766_0 * s,
-    ]
 }
 
 fn srgb([l, a, b]: [f64; 3]) -> [u8; 3] {

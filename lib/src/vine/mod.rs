@@ -28,7 +28,6 @@ mod stem;
 
 pub use params::Params;
 
-use crate::geom::boolean;
 use crate::geom::region::Region;
 use crate::progress::Progress;
 use crate::rng::Rng;
@@ -68,7 +67,7 @@ pub fn generate(
     let own = scene.containers.iter().map(|container| own_params(params, container));
     let own = own.collect::<Result<Vec<Params>, Error>>()?;
     let overlay: Vec<bool> = own.iter().map(|own| own.overlay).collect();
-    let shapes = Shapes::new(scene, &overlay)?;
+    let mut shapes = Shapes::new(scene, &overlay)?;
     let lists: Vec<&str> = own.iter().flat_map(|own| [own.forks.as_str(), own.tips.as_str()]).collect();
     let library = Library::new(scene, &lists)?;
     check_seeds(scene, &shapes)?;
@@ -80,9 +79,9 @@ pub fn generate(
     let stems: Vec<&Guide> =
         scene.stems.iter().chain(scene.guides.iter().filter(|path| !path.marked)).collect();
     let mut used = vec![0.0; stems.len()];
-    let (islands, owners) = islands(scene, shapes, &stems, &own);
+    let owners = take_apart(&mut shapes, scene, &stems, &own);
     let mut largest = vec![0.0; own.len()];
-    for (&area, &index) in islands.areas.iter().zip(&owners) {
+    for (&area, &index) in shapes.areas.iter().zip(&owners) {
         largest[index] = f64::max(largest[index], area);
     }
     let mut grown = vec![false; own.len()];
@@ -94,7 +93,7 @@ pub fn generate(
         }
         let mut one = Container {
             scene,
-            shapes: &islands,
+            shapes: &shapes,
             island,
             index,
             area: largest[index],
@@ -130,34 +129,22 @@ pub fn generate(
         complete,
         warnings,
         counts,
-        decimals: islands.decimals(),
+        decimals: shapes.decimals(),
         ..Artwork::default()
     })
 }
 
-/// Shapes whose containers are in one piece each, the largest first, and of which container each was: a
-/// vine of its own grows in every letter of a word. A band stays whole, and a container for which the
-/// artist says where stems start.
-fn islands(scene: &Scene, mut shapes: Shapes, stems: &[&Guide], own: &[Params]) -> (Shapes, Vec<usize>) {
-    let mut owners = Vec::new();
-    let mut whole = std::mem::take(&mut shapes.containers);
-    for (index, contours) in whole.iter_mut().enumerate() {
-        let is_planned = Region::new(contours.clone()).is_some_and(|region| {
-            let starts = scene.seeds.iter().map(|seed| seed.at);
-            let ends =
-                stems.iter().flat_map(|stem| stem.path.elements().iter().filter_map(PathEl::end_point));
-            starts.chain(ends).any(|at| region.contains(at))
-        });
-        let mut parts = boolean::parts(std::mem::take(contours));
-        parts.reverse();
-        if parts.len() < 2 || is_planned || own[index].repeat {
-            parts = vec![parts.concat()];
-        }
-        owners.extend(parts.iter().map(|_| index));
-        shapes.containers.extend(parts);
-    }
-    shapes.measure();
-    (shapes, owners)
+/// Takes containers apart that are in several pieces: a vine of its own grows in every letter of a word. A band
+/// stays whole, and a container for which the artist says where stems start. Of which each is.
+fn take_apart(shapes: &mut Shapes, scene: &Scene, stems: &[&Guide], own: &[Params]) -> Vec<usize> {
+    shapes.take_apart(|index, contours| {
+        own[index].repeat
+            || Region::new(contours.to_vec()).is_none_or(|region| {
+                let starts = scene.seeds.iter().map(|seed| seed.at);
+                let nodes = stems.iter().flat_map(|stem| stem.path.elements());
+                starts.chain(nodes.filter_map(PathEl::end_point)).any(|at| region.contains(at))
+            })
+    })
 }
 
 /// Errors on a seed outside every container.

@@ -6,11 +6,12 @@ use crate::artwork::Artwork;
 use crate::document::Document;
 use crate::document::edit::{splice, start_tag_end, tag_name};
 use crate::error::Error;
-use crate::scene::Scene;
+use crate::scene::{Scene, Selection};
+use crate::shape::subpaths;
 use crate::vocabulary::NAMESPACE;
 use crate::write::{self, Sink, attribute};
 use crate::xml::PlainAttribute;
-use kurbo::{BezPath, PathEl, Point, Rect, Shape};
+use kurbo::{BezPath, Point, Rect, Shape};
 use roxmltree::Node;
 use std::collections::HashSet;
 use std::fmt::Write;
@@ -25,23 +26,20 @@ pub struct Held {
 }
 
 impl Held {
-    /// Fills the holes of the pieces: what can be seen through a leaf is no room for others.
-    pub fn fill_holes(&self, scene: &mut Scene) {
+    /// What a selection asks for around the pieces. Their holes are filled: what can be seen through a leaf is
+    /// no room for others.
+    ///
+    /// Errors: as [`Document::scene`].
+    pub fn scene(&self, selection: &Selection) -> Result<Scene, Error> {
+        let mut scene = self.document.scene(selection)?;
         let held = scene.fixed.iter_mut().filter(|fixed| self.ids.contains(&fixed.source.id));
         for part in held.flat_map(|fixed| &mut fixed.parts) {
             // Subpaths that all run the same way round wind around nothing of each other.
-            let mut all = BezPath::new();
-            let mut rest = part.path.elements();
-            while !rest.is_empty() {
-                let next = rest[1..].iter().position(|el| matches!(el, PathEl::MoveTo(_)));
-                let (one, others) = rest.split_at(next.map_or(rest.len(), |i| i + 1));
-                let one = BezPath::from_vec(one.to_vec());
-                all.extend(if one.area() < 0.0 { one.reverse_subpaths() } else { one });
-                rest = others;
-            }
-            part.path = all;
+            let one_way = |one: BezPath| if one.area() < 0.0 { one.reverse_subpaths() } else { one };
+            part.path = subpaths(&part.path).into_iter().flat_map(one_way).collect();
             part.style.set("fill-rule", "nonzero");
         }
+        Ok(scene)
     }
 
     /// Takes the copies of the pieces out of an artwork, as which fixed objects come: the layer has them.
